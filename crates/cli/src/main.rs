@@ -1,0 +1,2 @@
+//! The `catenix` command.
+fn main() {}

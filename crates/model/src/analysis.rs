@@ -1,0 +1,46 @@
+//! Settings of the analyses.
+
+/// How static equilibrium is sought.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StaticsSettings {
+    /// Whether the current acts in the static equilibrium.
+    pub current: bool,
+    /// Largest residual force at any element, as a fraction of the system's reference force [-].
+    pub tolerance: f64,
+    /// Most iterations before giving up.
+    pub max_iterations: usize,
+}
+
+/// How the motion is integrated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DynamicsSettings {
+    /// Simulated time [s].
+    pub duration: f64,
+    /// Step size.
+    pub step: StepControl,
+    /// Spectral radius at infinite frequency of generalised-alpha, 0 to 1 [-].
+    pub spectral_radius: f64,
+    /// Largest residual force at any element, as a fraction of the system's reference force [-].
+    pub tolerance: f64,
+    /// Most Newton iterations per step before the step is cut.
+    pub max_iterations: usize,
+    /// Length of the window at the end over which means and extremes are reported [s].
+    pub statistics_window: f64,
+}
+
+/// Choice of the time step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum StepControl {
+    /// Constant step [s] (shortened only to end on output times, or cut when Newton fails).
+    Fixed(f64),
+    /// Step chosen so that the local error of one step stays below `accuracy` (a fraction of the
+    /// reference length of the system), between `min` and `max` [s].
+    Adaptive {
+        /// Relative local error allowed per step [-].
+        accuracy: f64,
+        /// Smallest step [s].
+        min: f64,
+        /// Largest step [s].
+        max: f64,
+    },
+}

@@ -1,0 +1,76 @@
+//! What the user wrote: the TOML model file, its units and diagnostics, and the validated [`Model`].
+//!
+//! The file is parsed, resolved and validated once ([`file`]); everything after that sees only the
+//! immutable types of this crate, in SI units and radians, axes x, y horizontal and z up with the
+//! origin in the mean sea surface. Names are kept for messages and results; cross references are
+//! indices, so that nothing downstream can meet a name that does not exist.
+
+mod analysis;
+mod body;
+mod environment;
+mod line;
+mod motion;
+mod output;
+
+pub use analysis::{DynamicsSettings, StaticsSettings, StepControl};
+pub use body::{Body, Vessel};
+pub use environment::{Current, CurrentPoint, Environment, Seabed};
+pub use line::{
+    Attachment, EndConnection, Joint, Line, LineEnd, LineType, PipeWall, Section, SupportRef,
+};
+pub use motion::{Degree, Motion, TowLeg};
+pub use output::{
+    Axis, Channel, ChannelTarget, Figure, LineQuantity, OutputSettings, PublishedValue,
+    all_channels,
+};
+
+/// One system in one environment with its motions: a load case, ready to be assembled.
+///
+/// Everything is SI, every index is valid: [`file::read_study`] guarantees it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model {
+    /// Title of the model file.
+    pub title: String,
+    /// Water, current and seabed.
+    pub environment: Environment,
+    /// Cross sections that the lines' sections refer to by index.
+    pub line_types: Vec<LineType>,
+    /// Pipes, hoses, cables and moorings.
+    pub lines: Vec<Line>,
+    /// Free rigid bodies.
+    pub bodies: Vec<Body>,
+    /// Bodies with prescribed motion, anchors (no motion) included.
+    pub vessels: Vec<Vessel>,
+    /// How static equilibrium is sought.
+    pub statics: StaticsSettings,
+    /// How the motion is integrated; `None` when the file describes statics only.
+    pub dynamics: Option<DynamicsSettings>,
+    /// What is recorded.
+    pub output: OutputSettings,
+}
+
+/// A named [`Model`]: the base model with one load case's overrides applied.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadCase {
+    /// Key of the case in the model file; `"base"` when the file has no cases.
+    pub name: String,
+    /// One sentence for tables and legends; may be empty.
+    pub description: String,
+    /// The case's complete model.
+    pub model: Model,
+    /// Published numbers that this case's results are compared with.
+    pub published: Vec<PublishedValue>,
+}
+
+/// A model file: its load cases and the figures that draw them together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Study {
+    /// Title of the model file.
+    pub title: String,
+    /// Remark printed under tables and figures, for example that the input is a calibration.
+    pub note: String,
+    /// All load cases, in file order; at least one.
+    pub cases: Vec<LoadCase>,
+    /// Figures over all cases.
+    pub figures: Vec<Figure>,
+}

@@ -1,0 +1,156 @@
+//! Lines: cross sections, sections, attachments and ends.
+
+/// Cross-section properties of a line, per metre of unstretched length.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LineType {
+    /// Name in the model file.
+    pub name: String,
+    /// Outer (hydrodynamic) diameter: sets buoyancy, drag and added mass [m].
+    pub outer_diameter: f64,
+    /// Inner diameter, the bore that the content fills [m].
+    pub inner_diameter: f64,
+    /// Mass with content [kg/m].
+    pub mass: f64,
+    /// Axial stiffness EA [N].
+    pub axial_stiffness: f64,
+    /// Bending stiffness EI, the same about both normal axes [N m2]; 0 is a chain.
+    pub bending_stiffness: f64,
+    /// Torsional stiffness GJ [N m2].
+    pub torsional_stiffness: f64,
+    /// Shear stiffness [N] (kappa G A); `None`: rigid in shear (Euler-Bernoulli).
+    pub shear_stiffness: Option<f64>,
+    /// Second moment of mass about the line's axis [kg m].
+    pub polar_inertia: f64,
+    /// Stiffness-proportional structural damping time: damping = this x stiffness [s].
+    pub structural_damping: f64,
+    /// Normal drag coefficient, on the outer diameter [-].
+    pub normal_drag: f64,
+    /// Axial drag coefficient, on pi times the outer diameter [-].
+    pub axial_drag: f64,
+    /// Normal added-mass coefficient, on the displaced mass [-].
+    pub normal_added_mass: f64,
+    /// Axial added-mass coefficient, on the displaced mass [-].
+    pub axial_added_mass: f64,
+    /// Density of the content [kg/m3]; 0 for an empty bore. Already part of `mass`.
+    pub content_density: f64,
+    /// The stress-carrying wall; `None` when the type gives no geometry of a homogeneous wall, and
+    /// then no stress is reported.
+    pub wall: Option<PipeWall>,
+}
+
+/// A homogeneous round wall, for stresses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PipeWall {
+    /// Outer diameter of the load-carrying wall [m].
+    pub outer_diameter: f64,
+    /// Inner diameter of the load-carrying wall [m].
+    pub inner_diameter: f64,
+}
+
+/// A stretch of a line with constant properties.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Section {
+    /// Index into [`crate::Model::line_types`].
+    pub line_type: usize,
+    /// Unstretched length of each element from end A to end B, (n_elements) [m].
+    pub element_lengths: Vec<f64>,
+}
+
+/// A small rigid lump on a line: float, clump weight or pump.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Attachment {
+    /// Name in the model file.
+    pub name: String,
+    /// Unstretched distance from end A [m].
+    pub arc_length: f64,
+    /// Mass [kg].
+    pub mass: f64,
+    /// Displaced volume [m3].
+    pub volume: f64,
+    /// Drag coefficient times area, the same in all directions [m2].
+    pub drag_area: f64,
+    /// Added mass, the same in all directions [kg].
+    pub added_mass: f64,
+}
+
+/// A run of pipe, hose or cable from end A to end B.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// Name in the model file.
+    pub name: String,
+    /// Sections from end A to end B; at least one.
+    pub sections: Vec<Section>,
+    /// Lumps, by increasing arc length.
+    pub attachments: Vec<Attachment>,
+    /// End A (`[0]`) and end B (`[1]`).
+    pub ends: [LineEnd; 2],
+}
+
+impl Line {
+    /// Unstretched length [m].
+    pub fn length(&self) -> f64 {
+        self.sections.iter().flat_map(|section| &section.element_lengths).sum()
+    }
+
+    /// Number of elements over all sections.
+    pub fn element_count(&self) -> usize {
+        self.sections.iter().map(|section| section.element_lengths.len()).sum()
+    }
+}
+
+/// What holds an end of a line.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LineEnd {
+    /// Nothing.
+    Free,
+    /// A vessel, anchor or body, through a joint.
+    Connected(EndConnection),
+}
+
+/// The connection of a line's end to a vessel or body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EndConnection {
+    /// What the end is connected to.
+    pub to: SupportRef,
+    /// Connection point in the local axes of the vessel or body, from its origin (3) [m].
+    pub point_local: [f64; 3],
+    /// Direction of the line from A to B at the connection, in local axes, unit (3) [-]. Matters
+    /// for joints that hold a direction.
+    pub direction_local: [f64; 3],
+    /// The joint.
+    pub joint: Joint,
+}
+
+/// A vessel or a body, by index.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SupportRef {
+    /// Index into [`crate::Model::vessels`].
+    Vessel(usize),
+    /// Index into [`crate::Model::bodies`].
+    Body(usize),
+}
+
+/// Kinematics of a line's end connection. All joints hold the end's position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Joint {
+    /// All rotations free, or restrained by a linear spring `rotational_stiffness` [N m/rad] about
+    /// the bending axes (a flex joint) when that is not zero.
+    Ball {
+        /// Bending stiffness of the joint [N m/rad]; 0 for a true ball.
+        rotational_stiffness: f64,
+    },
+    /// Two rotations free, torsion held (Hooke or "cross" joint). The axis fixed to the support is
+    /// `axis_local`, in the support's local axes, unit, normal to the line's direction (3).
+    Universal {
+        /// Axis of the cross on the support's side (3) [-].
+        axis_local: [f64; 3],
+    },
+    /// One rotation free, about `axis_local` (support's local axes, unit, normal to the line's
+    /// direction) (3).
+    Hinge {
+        /// Hinge axis (3) [-].
+        axis_local: [f64; 3],
+    },
+    /// All rotations held.
+    Fixed,
+}

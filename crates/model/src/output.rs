@@ -1,0 +1,221 @@
+//! What is recorded, and under which names.
+
+use crate::Model;
+
+/// Settings of the result store.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutputSettings {
+    /// Interval of the time histories [s].
+    pub interval: f64,
+    /// Interval of the line fields (every quantity along every line) [s].
+    pub field_interval: f64,
+    /// Channels beyond the standard ones, as written by the user and resolved.
+    pub channels: Vec<Channel>,
+}
+
+/// A named time history with its unit, for example `buffer.offset_x` [m].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Channel {
+    /// `<object>.<quantity>`, or `<line>.<quantity>@<arc length>m`.
+    pub name: String,
+    /// Unit as printed, for example `"m"`, `"N"`, `"deg"`.
+    pub unit: &'static str,
+    /// What is recorded.
+    pub target: ChannelTarget,
+}
+
+/// A coordinate direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axis {
+    /// Global x.
+    X,
+    /// Global y.
+    Y,
+    /// Global z, up.
+    Z,
+}
+
+impl Axis {
+    /// All three, in order.
+    pub const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
+
+    /// Lower-case letter.
+    pub fn letter(self) -> char {
+        ['x', 'y', 'z'][self as usize]
+    }
+}
+
+/// What a channel records.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ChannelTarget {
+    /// Position of a body's origin, global [m].
+    BodyPosition(usize, Axis),
+    /// Position of a body's origin less that of its offset vessel, global [m].
+    BodyOffset(usize, Axis),
+    /// Angle of a body's local z axis from the vertical [deg].
+    BodyTilt(usize),
+    /// Position of a vessel's origin, global [m].
+    VesselPosition(usize, Axis),
+    /// Force of a line on what its end (0 for A, 1 for B) is connected to, global [N].
+    EndForce(usize, usize, Axis),
+    /// Moment of a line on what its end is connected to, about the connection point, global [N m].
+    EndMoment(usize, usize, Axis),
+    /// Effective tension at an end of a line [N].
+    EndTension(usize, usize),
+    /// Angle at an end of a line between the line and the vertical [deg].
+    EndDeclination(usize, usize),
+    /// A line quantity at the node nearest to an arc length: line, quantity, node index.
+    LinePoint(usize, LineQuantity, usize),
+}
+
+/// A result along a line, given at its nodes: end A, between each two elements, end B
+/// (n_elements + 1 values).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum LineQuantity {
+    /// Position, global x [m].
+    X,
+    /// Position, global y [m].
+    Y,
+    /// Position, global z [m].
+    Z,
+    /// Effective tension [N].
+    EffectiveTension,
+    /// Tension in the wall [N].
+    WallTension,
+    /// Resultant shear force [N].
+    ShearForce,
+    /// Resultant bending moment [N m].
+    BendMoment,
+    /// Resultant curvature [1/m].
+    Curvature,
+    /// Torque [N m].
+    Torque,
+    /// Largest von Mises stress in the wall [Pa]; NaN where the line type has no wall.
+    VonMisesStress,
+    /// Angle between the line (from A to B) and the downward vertical [deg].
+    Declination,
+}
+
+impl LineQuantity {
+    /// All quantities, in the order of every array that holds them.
+    pub const ALL: [LineQuantity; 11] = [
+        LineQuantity::X,
+        LineQuantity::Y,
+        LineQuantity::Z,
+        LineQuantity::EffectiveTension,
+        LineQuantity::WallTension,
+        LineQuantity::ShearForce,
+        LineQuantity::BendMoment,
+        LineQuantity::Curvature,
+        LineQuantity::Torque,
+        LineQuantity::VonMisesStress,
+        LineQuantity::Declination,
+    ];
+
+    /// Name in files and channels.
+    pub fn name(self) -> &'static str {
+        match self {
+            LineQuantity::X => "x",
+            LineQuantity::Y => "y",
+            LineQuantity::Z => "z",
+            LineQuantity::EffectiveTension => "effective_tension",
+            LineQuantity::WallTension => "wall_tension",
+            LineQuantity::ShearForce => "shear_force",
+            LineQuantity::BendMoment => "bend_moment",
+            LineQuantity::Curvature => "curvature",
+            LineQuantity::Torque => "torque",
+            LineQuantity::VonMisesStress => "von_mises_stress",
+            LineQuantity::Declination => "declination",
+        }
+    }
+
+    /// Unit as printed.
+    pub fn unit(self) -> &'static str {
+        match self {
+            LineQuantity::X | LineQuantity::Y | LineQuantity::Z => "m",
+            LineQuantity::EffectiveTension
+            | LineQuantity::WallTension
+            | LineQuantity::ShearForce => "N",
+            LineQuantity::BendMoment | LineQuantity::Torque => "N m",
+            LineQuantity::Curvature => "1/m",
+            LineQuantity::VonMisesStress => "Pa",
+            LineQuantity::Declination => "deg",
+        }
+    }
+
+    /// Position in [`LineQuantity::ALL`].
+    pub fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// A number from a publication that a case's result is compared with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PublishedValue {
+    /// Channel whose mean over the statistics window is compared.
+    pub channel: Channel,
+    /// Published value, in the channel's unit.
+    pub value: f64,
+    /// Where it was published.
+    pub source: String,
+}
+
+/// A figure: one channel against time, one curve per load case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// Key in the model file and stem of the file name.
+    pub name: String,
+    /// Title above the axes.
+    pub title: String,
+    /// Channel that is drawn; present in every case.
+    pub channel: Channel,
+}
+
+/// The channels that are always recorded, in a fixed order: vessels, bodies, line ends; then the
+/// user's own.
+pub fn all_channels(model: &Model) -> Vec<Channel> {
+    let mut channels = Vec::new();
+    let mut push = |name: String, unit, target| channels.push(Channel { name, unit, target });
+    for (index, vessel) in model.vessels.iter().enumerate() {
+        for axis in Axis::ALL {
+            let name = format!("{}.{}", vessel.name, axis.letter());
+            push(name, "m", ChannelTarget::VesselPosition(index, axis));
+        }
+    }
+    for (index, body) in model.bodies.iter().enumerate() {
+        for axis in Axis::ALL {
+            let name = format!("{}.{}", body.name, axis.letter());
+            push(name, "m", ChannelTarget::BodyPosition(index, axis));
+        }
+        if body.offset_vessel.is_some() {
+            for axis in Axis::ALL {
+                let name = format!("{}.offset_{}", body.name, axis.letter());
+                push(name, "m", ChannelTarget::BodyOffset(index, axis));
+            }
+        }
+        push(format!("{}.tilt", body.name), "deg", ChannelTarget::BodyTilt(index));
+    }
+    for (index, line) in model.lines.iter().enumerate() {
+        for (end, label) in ["end_a", "end_b"].into_iter().enumerate() {
+            let prefix = format!("{}.{label}", line.name);
+            for axis in Axis::ALL {
+                let name = format!("{prefix}.force_{}", axis.letter());
+                push(name, "N", ChannelTarget::EndForce(index, end, axis));
+            }
+            for axis in Axis::ALL {
+                let name = format!("{prefix}.moment_{}", axis.letter());
+                push(name, "N m", ChannelTarget::EndMoment(index, end, axis));
+            }
+            let name = format!("{prefix}.effective_tension");
+            push(name, "N", ChannelTarget::EndTension(index, end));
+            let name = format!("{prefix}.declination");
+            push(name, "deg", ChannelTarget::EndDeclination(index, end));
+        }
+    }
+    for channel in &model.output.channels {
+        if !channels.contains(channel) {
+            channels.push(channel.clone());
+        }
+    }
+    channels
+}
