@@ -1,2 +1,70 @@
-//! Project tasks.
-fn main() {}
+//! Project tasks, run as `cargo xtask <command>`.
+//!
+//! `test` runs everything that a change must pass; `tidy` runs only the architecture test, which is
+//! also one of the tests. CONTRIBUTING.md explains both.
+
+// This program talks to a person at a terminal; printing is its only output.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+mod read_back;
+mod steps;
+mod tidy;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+const USAGE: &str = "\
+usage: cargo xtask <command>
+
+  test                  formatting, lints, documentation, read-back check and all tests
+  test --only <step>    one step of the above
+  test --list           the steps and what each does
+  tidy                  only the architecture test: crate arrows, source rules, documents
+";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let root = workspace_root();
+    match arguments[..] {
+        ["test"] => steps::run(&root, None),
+        ["test", "--only", step] => steps::run(&root, Some(step)),
+        ["test", "--list"] => {
+            steps::list();
+            ExitCode::SUCCESS
+        }
+        ["tidy"] => report_tidy(&root),
+        _ => {
+            eprint!("{USAGE}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// The folder of the workspace's `Cargo.toml`.
+fn workspace_root() -> PathBuf {
+    let xtask = Path::new(env!("CARGO_MANIFEST_DIR"));
+    xtask
+        .parent()
+        .map_or_else(|| xtask.to_path_buf(), Path::to_path_buf)
+}
+
+fn report_tidy(root: &Path) -> ExitCode {
+    match tidy::check(root) {
+        Ok(violations) if violations.is_empty() => {
+            println!("tidy: no violations");
+            ExitCode::SUCCESS
+        }
+        Ok(violations) => {
+            for violation in &violations {
+                println!("{violation}\n");
+            }
+            println!("tidy: {} violations", violations.len());
+            ExitCode::FAILURE
+        }
+        Err(message) => {
+            eprintln!("tidy could not run: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
