@@ -1,1 +1,29 @@
-//! x
+//! Mathematics without physics: rotations, 6 x 6 blocks, the block solver for chains that meet at
+//! junctions, and the implicit time integrator.
+//!
+//! Every unknown is a *frame*: three translations and three rotations. Vectors over frames are
+//! slices of [`Vector6`], translation first, all components in the global axes. Rotations are
+//! updated by left multiplication: an increment `theta` turns `R` into `exp(theta) R`.
+
+mod block;
+mod chains;
+mod frames;
+mod generalised_alpha;
+mod junctions;
+pub mod so3;
+pub mod spline;
+
+pub use block::{Block6, BlockLu, SingularBlock};
+pub use chains::{BlockMatrix, Chain, FactorError, Factorisation, Topology};
+pub use frames::Configuration;
+pub use generalised_alpha::{
+    AlphaParameters, GeneralisedAlpha, ImplicitSystem, MotionState, NewtonFailure, NewtonSettings,
+    ResidualSize, StepOutcome, TangentWeights,
+};
+
+/// Three components, global axes unless said otherwise.
+pub type Vector3 = nalgebra::Vector3<f64>;
+/// Three by three.
+pub type Matrix3 = nalgebra::Matrix3<f64>;
+/// Translation part first, then rotation part.
+pub type Vector6 = nalgebra::Vector6<f64>;
