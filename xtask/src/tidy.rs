@@ -6,6 +6,7 @@
 
 mod architecture;
 mod arrows;
+mod dependencies;
 mod files;
 mod links;
 mod sources;
@@ -46,6 +47,7 @@ impl fmt::Display for Violation {
 pub(crate) fn check(root: &Path) -> Result<Vec<Violation>, String> {
     let files = files::read_all(root)?;
     let mut violations = arrows::check(root, &files)?;
+    violations.extend(dependencies::check(root)?);
     violations.extend(sources::check(&files));
     violations.extend(theory::check(&files));
     violations.extend(links::check(root, &files));

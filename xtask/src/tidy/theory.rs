@@ -196,22 +196,38 @@ fn numbers_after(text: &str) -> Option<Vec<String>> {
         return Some(Vec::new());
     };
     rest = after;
-    let mut numbers = Vec::new();
+    let mut numbers: Vec<String> = Vec::new();
     loop {
-        rest = skip(
+        let separated = skip(
             rest,
             &[",", ";", "and", "or", "to", "-", "\u{2013}", "eqs.", "eq."],
         );
-        let Some((number, after)) = rest.strip_prefix('(').and_then(|r| r.split_once(')')) else {
+        let separator = rest[..rest.len() - separated.len()].trim();
+        let Some((number, after)) = separated.strip_prefix('(').and_then(|r| r.split_once(')'))
+        else {
             break;
         };
         if !is_number(number) {
             break;
         }
+        if ["to", "-", "\u{2013}"].contains(&separator) {
+            numbers.extend(between(numbers.last(), number));
+        }
         numbers.push(number.to_owned());
         rest = after;
     }
     (!numbers.is_empty()).then_some(numbers)
+}
+
+/// The whole numbers between two ends of a range.
+fn between(first: Option<&String>, last: &str) -> Vec<String> {
+    match (
+        first.and_then(|number| number.parse::<u32>().ok()),
+        last.parse::<u32>().ok(),
+    ) {
+        (Some(first), Some(last)) => (first + 1..last).map(|number| number.to_string()).collect(),
+        _ => Vec::new(),
+    }
 }
 
 /// `text` without leading blanks and the given words.
@@ -287,6 +303,12 @@ mod tests {
         ] {
             assert_eq!(violations(source).len(), 1, "{source}");
         }
+    }
+
+    #[test]
+    fn a_range_cites_everything_in_it() {
+        let found = violations("/// Source: docs/theory/drag.md, eqs. (2) to (5).");
+        assert_eq!(found.len(), 3, "{found:?}");
     }
 
     #[test]
