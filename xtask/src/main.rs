@@ -6,6 +6,7 @@
 // This program talks to a person at a terminal; printing is its only output.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod documentation;
 mod read_back;
 mod steps;
 mod tidy;

@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
-use crate::read_back;
+use crate::{documentation, read_back};
 
 struct Step {
     name: &'static str,
@@ -31,7 +31,7 @@ const STEPS: [Step; 6] = [
     Step {
         name: "docs",
         what: "documentation builds, all its links lead somewhere",
-        run: docs,
+        run: documentation::build,
     },
     Step {
         name: "doc-tests",
@@ -151,11 +151,6 @@ fn lints(root: &Path) -> Result<(), String> {
         "warnings",
     ];
     run_command(&mut cargo(root, &arguments))
-}
-
-fn docs(root: &Path) -> Result<(), String> {
-    let mut command = cargo(root, &["doc", "--workspace", "--no-deps"]);
-    run_command(command.env("RUSTDOCFLAGS", "-D warnings"))
 }
 
 fn doc_tests(root: &Path) -> Result<(), String> {
