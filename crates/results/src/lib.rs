@@ -1,0 +1,35 @@
+//! Results of a study: statistics, the result store, summaries and figures.
+//!
+//! Data flows in from a solver through the [`Sample`] trait: a [`ResultStore`] hands out one
+//! [`CaseRecorder`] per load case, which writes histories, line fields, range graphs, the static
+//! state and the solver's account while the case runs. [`StoredStudy`] reads a store back, whether
+//! it was finished, interrupted or killed, and makes the same [`Summary`] from it.
+//!
+//! The layout of the store is in docs/results.md; it opens in xarray as it is.
+
+mod case_arrays;
+mod error;
+mod layout;
+mod outcome;
+mod recorder;
+mod sample;
+mod series;
+mod statistics;
+mod store;
+mod store_reader;
+mod stored_statistics;
+mod summary;
+mod zarr;
+
+pub use error::StoreError;
+pub use layout::{STORE_FORMAT, STORE_NAME};
+pub use outcome::{CaseOutcome, DynamicsFacts, StaticsFacts};
+pub use recorder::CaseRecorder;
+pub use sample::Sample;
+pub use statistics::{RangeGraph, WindowStatistics};
+pub use store::{Provenance, ResultStore, StoredFigure};
+pub use store_reader::{Field, History, StoredCase, StoredStudy};
+pub use summary::{
+    BodySummary, CaseError, CaseSummary, Comparison, EndSummary, Extent, LineSummary, Located,
+    Status, Summary,
+};

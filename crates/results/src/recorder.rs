@@ -1,0 +1,264 @@
+//! Records one load case while it is computed.
+
+use std::time::{Duration, Instant};
+
+use catenix_model::{Channel, LineQuantity, LoadCase, all_channels};
+
+use crate::case_arrays::{CaseArrays, LineArrays};
+use crate::layout;
+use crate::outcome::CaseOutcome;
+use crate::store_reader::StoredCase;
+use crate::summary::{CaseLayout, StatisticsSource};
+use crate::zarr::{Attributes, Group};
+use crate::{CaseSummary, Extent, RangeGraph, Sample, Status, StoreError, WindowStatistics};
+
+/// Longest elapsed time between two flushes. A killed run loses at most this much of its work.
+const FLUSH_INTERVAL: Duration = Duration::from_secs(2);
+
+/// Writes the histories, fields, statistics and static state of one load case into the store.
+///
+/// Give it the static state, then every accepted step, then the outcome:
+/// [`record_static`](Self::record_static), [`record`](Self::record), [`finish`](Self::finish).
+#[derive(Debug)]
+pub struct CaseRecorder {
+    name: String,
+    group: Group,
+    attributes: Attributes,
+    layout: CaseLayout,
+    channels: Vec<Channel>,
+    arrays: Option<CaseArrays>,
+    /// Time at which the statistics window of a complete run starts [s].
+    window_start_s: f64,
+    /// End of a complete run [s].
+    duration_s: f64,
+    channel_statistics: WindowStatistics,
+    line_statistics: Vec<WindowStatistics>,
+    /// Values of all channels (n_channels).
+    channel_values: Vec<f64>,
+    /// Values along each line (quantities x nodes).
+    line_values: Vec<Vec<f64>>,
+    last_flush: Instant,
+}
+
+impl CaseRecorder {
+    pub(crate) fn new(group: Group, mut attributes: Attributes, case: &LoadCase) -> Self {
+        let model = &case.model;
+        let channels = all_channels(model);
+        let (duration_s, window) = match &model.dynamics {
+            Some(dynamics) => (dynamics.duration, dynamics.statistics_window),
+            None => (0.0, 0.0),
+        };
+        let line_values: Vec<Vec<f64>> = model
+            .lines
+            .iter()
+            .map(|line| vec![0.0; LineQuantity::ALL.len() * (line.element_count() + 1)])
+            .collect();
+        attributes.insert(layout::STATUS_KEY.into(), Status::Running.word().into());
+        CaseRecorder {
+            name: case.name.clone(),
+            group,
+            attributes,
+            layout: layout::case_layout(case),
+            channel_statistics: WindowStatistics::new(channels.len()),
+            line_statistics: line_values
+                .iter()
+                .map(|v| WindowStatistics::new(v.len()))
+                .collect(),
+            channel_values: vec![0.0; channels.len()],
+            line_values,
+            channels,
+            arrays: None,
+            window_start_s: (duration_s - window).max(0.0),
+            duration_s,
+            last_flush: Instant::now(),
+        }
+    }
+
+    /// Records the static state, and makes the arrays that the motion will fill.
+    pub fn record_static(
+        &mut self,
+        case: &LoadCase,
+        sample: &impl Sample,
+    ) -> Result<(), StoreError> {
+        let mut arrays = CaseArrays::create(self.group.path(), &case.model, &self.channels)?;
+        for (line, arrays) in arrays.lines.iter().enumerate() {
+            sample.line_quantities(line, &mut self.line_values[line]);
+            arrays.write_static(&self.line_values[line])?;
+        }
+        if case.model.dynamics.is_none() {
+            // The static state is all there is: it stands for the history and the statistics too.
+            self.write_rows(&mut arrays, sample, true, true, true)?;
+        }
+        self.arrays = Some(arrays);
+        self.flush()
+    }
+
+    /// Records an accepted state: the start, then the end of every step.
+    pub fn record(&mut self, sample: &impl Sample) -> Result<(), StoreError> {
+        let Some(mut arrays) = self.arrays.take() else {
+            return Ok(());
+        };
+        let tolerance = 1e-9 * self.duration_s.max(1.0);
+        let in_window = sample.time() >= self.window_start_s - tolerance;
+        let result = self.write_rows(
+            &mut arrays,
+            sample,
+            sample.at_output_time(),
+            sample.at_field_time(),
+            in_window,
+        );
+        self.arrays = Some(arrays);
+        let chunk_written = result?;
+        if chunk_written || self.last_flush.elapsed() >= FLUSH_INTERVAL {
+            self.flush()?;
+        }
+        Ok(())
+    }
+
+    /// Evaluates and stores what is due at a sample; returns whether a chunk was filled.
+    fn write_rows(
+        &mut self,
+        arrays: &mut CaseArrays,
+        sample: &impl Sample,
+        history: bool,
+        fields: bool,
+        in_window: bool,
+    ) -> Result<bool, StoreError> {
+        let mut chunk_written = false;
+        if history || in_window {
+            for (value, channel) in self.channel_values.iter_mut().zip(&self.channels) {
+                *value = sample.channel(channel.target);
+            }
+        }
+        if fields || in_window {
+            for (line, values) in self.line_values.iter_mut().enumerate() {
+                sample.line_quantities(line, values);
+            }
+        }
+        if in_window {
+            self.channel_statistics
+                .add(sample.time(), &self.channel_values);
+            for (statistics, values) in self.line_statistics.iter_mut().zip(&self.line_values) {
+                statistics.add(sample.time(), values);
+            }
+        }
+        if history {
+            chunk_written |= arrays.push_history(sample.time(), &self.channel_values)?;
+        }
+        if fields {
+            chunk_written |= arrays.push_fields(sample.time(), &self.line_values)?;
+        }
+        Ok(chunk_written)
+    }
+
+    /// Brings the store up to date: first the data, then the attributes that count the rows.
+    fn flush(&mut self) -> Result<(), StoreError> {
+        if let Some(mut arrays) = self.arrays.take() {
+            let flushed = arrays.history.flush().and_then(|()| arrays.fields.flush());
+            let written = flushed.and_then(|()| self.write_attributes(&arrays));
+            self.arrays = Some(arrays);
+            written?;
+        }
+        self.last_flush = Instant::now();
+        Ok(())
+    }
+
+    /// Writes everything that is left and returns the summary of the case.
+    ///
+    /// A complete case reports the statistics of every step in the window. One that stopped early
+    /// never saw its window: it reports the last stretch of that length, from what is stored.
+    pub fn finish(mut self, outcome: &CaseOutcome) -> Result<CaseSummary, StoreError> {
+        outcome.write_to(&mut self.attributes);
+        let mut summary = outcome.summary(&self.layout.description);
+        let mut arrays = self.arrays.take();
+        if let Some(arrays) = &mut arrays {
+            arrays.history.finish()?;
+            arrays.fields.finish()?;
+            self.write_attributes(arrays)?;
+            if outcome.status == Status::Complete && self.channel_statistics.window_s().is_some() {
+                self.write_range_graphs(&arrays.lines)?;
+                summary.window_s = self.channel_statistics.window_s();
+                summary.fill(&self.layout, &StepStatistics::new(&self, &arrays.lines));
+            } else {
+                let stored = StoredCase::new(self.group.clone(), self.name.clone());
+                let statistics = stored.statistics_of_last(self.layout.window_s)?;
+                for line in &arrays.lines {
+                    for quantity in line.quantities() {
+                        if let Some((_, graph)) = statistics.line(&line.name, quantity) {
+                            line.write_range_graph(quantity, &graph)?;
+                        }
+                    }
+                }
+                summary.window_s = statistics.window_s();
+                summary.fill(&self.layout, &statistics);
+            }
+        }
+        // A summary is plain numbers and strings: it always becomes JSON.
+        let text = serde_json::to_string(&summary).unwrap_or_default();
+        self.attributes
+            .insert(layout::SUMMARY_KEY.into(), text.into());
+        self.group.set_attributes(&self.attributes)?;
+        Ok(summary)
+    }
+
+    fn write_range_graphs(&self, lines: &[LineArrays]) -> Result<(), StoreError> {
+        for (line, statistics) in lines.iter().zip(&self.line_statistics) {
+            let graph = statistics.range_graph();
+            for quantity in line.quantities() {
+                line.write_range_graph(quantity, &line.part_of(&graph, quantity))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn write_attributes(&mut self, arrays: &CaseArrays) -> Result<(), StoreError> {
+        let (history, fields) = (arrays.history.flushed_rows(), arrays.fields.flushed_rows());
+        self.attributes
+            .insert(layout::HISTORY_ROWS_KEY.into(), history.into());
+        self.attributes
+            .insert(layout::FIELD_ROWS_KEY.into(), fields.into());
+        self.group.set_attributes(&self.attributes)
+    }
+}
+
+/// Statistics over every step in the window.
+struct StepStatistics<'a> {
+    channels: &'a [Channel],
+    channel_graph: RangeGraph,
+    lines: &'a [LineArrays],
+    line_graphs: Vec<RangeGraph>,
+}
+
+impl<'a> StepStatistics<'a> {
+    fn new(recorder: &'a CaseRecorder, lines: &'a [LineArrays]) -> Self {
+        StepStatistics {
+            channels: &recorder.channels,
+            channel_graph: recorder.channel_statistics.range_graph(),
+            lines,
+            line_graphs: recorder
+                .line_statistics
+                .iter()
+                .map(|s| s.range_graph())
+                .collect(),
+        }
+    }
+}
+
+impl StatisticsSource for StepStatistics<'_> {
+    fn channel(&self, name: &str) -> Option<Extent> {
+        let index = self
+            .channels
+            .iter()
+            .position(|channel| channel.name == name)?;
+        Some(self.channel_graph.extent(index))
+    }
+
+    fn line(&self, line: &str, quantity: LineQuantity) -> Option<(Vec<f64>, RangeGraph)> {
+        let index = self.lines.iter().position(|arrays| arrays.name == line)?;
+        let arrays = &self.lines[index];
+        Some((
+            arrays.arc_length.clone(),
+            arrays.part_of(&self.line_graphs[index], quantity),
+        ))
+    }
+}

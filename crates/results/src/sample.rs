@@ -1,0 +1,19 @@
+//! What the recorder needs to see of a solver.
+
+use catenix_model::ChannelTarget;
+
+/// One accepted state of a simulation. The adapters implement it on the engine's view of a step, so
+/// that results and engine do not know each other.
+pub trait Sample {
+    /// Simulated time [s].
+    fn time(&self) -> f64;
+    /// Whether the time histories get a row here.
+    fn at_output_time(&self) -> bool;
+    /// Whether the line fields get a row here.
+    fn at_field_time(&self) -> bool;
+    /// Value of a channel, in its unit.
+    fn channel(&self, target: ChannelTarget) -> f64;
+    /// Every quantity along a line: (quantities x nodes), in the order of
+    /// [`catenix_model::LineQuantity::ALL`] and from end A to end B.
+    fn line_quantities(&self, line: usize, out: &mut [f64]);
+}

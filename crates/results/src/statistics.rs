@@ -1,0 +1,200 @@
+//! Time-weighted extremes, mean and standard deviation of many values at once.
+
+use crate::Extent;
+
+/// Running statistics of `n` values that are sampled at uneven times.
+///
+/// The mean and the variance are integrals over time by the trapezoidal rule, so a step of twice
+/// the length counts twice; minimum and maximum are over the samples. The update is the weighted
+/// form of Welford's: West (1979), "Updating mean and variance estimates: an improved method",
+/// Communications of the ACM 22(9), 532-535. NaN anywhere makes the mean of that value NaN.
+#[derive(Debug, Clone)]
+pub struct WindowStatistics {
+    /// Smallest sample of each value (n).
+    min: Vec<f64>,
+    /// Largest sample of each value (n).
+    max: Vec<f64>,
+    /// Mean of each value over the committed samples (n).
+    mean: Vec<f64>,
+    /// Weighted sum of squared deviations from the mean (n).
+    squares: Vec<f64>,
+    /// Weight of the committed samples [s].
+    weight: f64,
+    /// Latest sample, whose weight is known only when the next one arrives (n).
+    pending: Vec<f64>,
+    /// Time of the latest sample and the weight it has so far [s].
+    last: Option<(f64, f64)>,
+    /// Time of the first sample [s].
+    first_time: f64,
+}
+
+impl WindowStatistics {
+    /// Statistics of `n` values without samples.
+    pub fn new(n: usize) -> Self {
+        WindowStatistics {
+            min: vec![f64::INFINITY; n],
+            max: vec![f64::NEG_INFINITY; n],
+            mean: vec![0.0; n],
+            squares: vec![0.0; n],
+            weight: 0.0,
+            pending: vec![0.0; n],
+            last: None,
+            first_time: f64::NAN,
+        }
+    }
+
+    /// Adds the sample `values` (n) at `time` [s]; times must not decrease.
+    pub fn add(&mut self, time: f64, values: &[f64]) {
+        match self.last {
+            None => {
+                self.first_time = time;
+                self.last = Some((time, 0.0));
+            }
+            Some((previous, weight)) => {
+                let half = 0.5 * (time - previous).max(0.0);
+                self.commit(weight + half);
+                self.last = Some((time, half));
+            }
+        }
+        self.pending.copy_from_slice(values);
+        for ((min, max), value) in self.min.iter_mut().zip(&mut self.max).zip(values) {
+            *min = min.min(*value);
+            *max = max.max(*value);
+        }
+    }
+
+    /// Times of the first and the last sample [s]; `None` without samples.
+    pub fn window_s(&self) -> Option<[f64; 2]> {
+        self.last.map(|(time, _)| [self.first_time, time])
+    }
+
+    /// The statistics of the samples so far; all NaN without samples. A single sample is its own
+    /// mean.
+    pub fn range_graph(&self) -> RangeGraph {
+        let n = self.mean.len();
+        let Some((_, last_weight)) = self.last else {
+            let nan = || vec![f64::NAN; n];
+            return RangeGraph {
+                min: nan(),
+                mean: nan(),
+                max: nan(),
+                std: nan(),
+            };
+        };
+        let mut all = self.clone();
+        all.commit(if self.weight + last_weight > 0.0 {
+            last_weight
+        } else {
+            1.0
+        });
+        let finite = |values: Vec<f64>| {
+            values
+                .into_iter()
+                .map(|v| if v.is_finite() { v } else { f64::NAN })
+                .collect()
+        };
+        let weight = all.weight;
+        RangeGraph {
+            min: finite(all.min),
+            mean: all.mean,
+            max: finite(all.max),
+            std: all
+                .squares
+                .iter()
+                .map(|s| (s.max(0.0) / weight).sqrt())
+                .map(|v| if v.is_finite() { v } else { f64::NAN })
+                .collect(),
+        }
+    }
+
+    /// Gives the pending sample its final weight [s].
+    fn commit(&mut self, weight: f64) {
+        self.weight += weight;
+        if self.weight <= 0.0 {
+            return;
+        }
+        let fraction = weight / self.weight;
+        let moments = self.mean.iter_mut().zip(&mut self.squares);
+        for ((mean, squares), value) in moments.zip(&self.pending) {
+            let deviation = value - *mean;
+            *mean += fraction * deviation;
+            *squares += weight * deviation * (value - *mean);
+        }
+    }
+}
+
+/// Minimum, mean, maximum and standard deviation over time of one quantity at each node of a line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RangeGraph {
+    /// Smallest value (n).
+    pub min: Vec<f64>,
+    /// Mean over time (n).
+    pub mean: Vec<f64>,
+    /// Largest value (n).
+    pub max: Vec<f64>,
+    /// Standard deviation over time (n).
+    pub std: Vec<f64>,
+}
+
+impl RangeGraph {
+    /// Statistics of rows of samples: `values` is (times x n).
+    pub fn from_rows(times: &[f64], values: &[f64], n: usize) -> Self {
+        let mut statistics = WindowStatistics::new(n);
+        for (time, row) in times.iter().zip(values.chunks_exact(n.max(1))) {
+            statistics.add(*time, row);
+        }
+        statistics.range_graph()
+    }
+
+    /// Minimum, mean and maximum of the value at `index`.
+    pub fn extent(&self, index: usize) -> Extent {
+        Extent {
+            min: self.min[index],
+            mean: self.mean[index],
+            max: self.max[index],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mean_weighs_samples_by_time() {
+        // Piecewise linear through (0, 0), (1, 1), (3, 1): integral 0.5 + 2 over 3 s.
+        let graph = RangeGraph::from_rows(&[0.0, 1.0, 3.0], &[0.0, 1.0, 1.0], 1);
+        assert!((graph.mean[0] - 2.5 / 3.0).abs() < 1e-15);
+        assert_eq!((graph.min[0], graph.max[0]), (0.0, 1.0));
+    }
+
+    #[test]
+    fn uneven_steps_leave_a_sine_its_mean_and_deviation() {
+        let mut times: Vec<f64> = (0..=2000).map(|i| f64::from(i) * 1e-3).collect();
+        times.retain(|t| *t < 0.7 || ((t * 1e3).round() as i64) % 4 == 0);
+        let values: Vec<f64> = times
+            .iter()
+            .map(|t| 1e6 + (std::f64::consts::TAU * t).sin())
+            .collect();
+        let graph = RangeGraph::from_rows(&times, &values, 1);
+        // The trapezoidal rule on steps of 4 ms has errors of (2 pi 0.004)^2 / 12 = 5e-5.
+        assert!((graph.mean[0] - 1e6).abs() < 5e-5);
+        assert!((graph.std[0] - 0.5_f64.sqrt()).abs() < 1e-4);
+    }
+
+    #[test]
+    fn one_sample_is_its_own_mean_and_none_is_nan() {
+        let graph = RangeGraph::from_rows(&[5.0], &[2.0, f64::NAN], 2);
+        assert_eq!(
+            graph.extent(0),
+            Extent {
+                min: 2.0,
+                mean: 2.0,
+                max: 2.0
+            }
+        );
+        assert_eq!(graph.std[0], 0.0);
+        assert!(graph.mean[1].is_nan() && graph.min[1].is_nan());
+        assert!(WindowStatistics::new(1).range_graph().mean[0].is_nan());
+    }
+}

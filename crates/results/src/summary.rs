@@ -1,0 +1,427 @@
+//! The summary of a study: the numbers that tables, JSON documents and reports print.
+//!
+//! The keys are a public interface, described in docs/results.md: names carry their unit, a number
+//! that does not exist is null, and keys are added but not renamed.
+
+use catenix_model::{Axis, LineQuantity};
+use indexmap::IndexMap;
+use serde::{Deserialize, Deserializer, Serialize};
+
+use crate::RangeGraph;
+
+/// How far a study or a load case came.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Status {
+    /// Not begun.
+    Pending,
+    /// Being computed; or its process was killed, and the store ends at the last flush.
+    Running,
+    /// Computed to the end.
+    Complete,
+    /// Stopped by the user.
+    Interrupted,
+    /// The solver gave up.
+    Failed,
+}
+
+impl Status {
+    /// The word that is stored and printed.
+    pub fn word(self) -> &'static str {
+        match self {
+            Status::Pending => "pending",
+            Status::Running => "running",
+            Status::Complete => "complete",
+            Status::Interrupted => "interrupted",
+            Status::Failed => "failed",
+        }
+    }
+
+    pub(crate) fn from_word(word: &str) -> Option<Self> {
+        use Status::{Complete, Failed, Interrupted, Pending, Running};
+        [Pending, Running, Complete, Interrupted, Failed]
+            .into_iter()
+            .find(|s| s.word() == word)
+    }
+
+    /// Status of a study from those of its cases: the worst news first.
+    pub fn of_study(cases: impl IntoIterator<Item = Status>) -> Self {
+        let rank = |status| match status {
+            Status::Complete => 0,
+            Status::Pending => 1,
+            Status::Running => 2,
+            Status::Failed => 3,
+            Status::Interrupted => 4,
+        };
+        cases
+            .into_iter()
+            .max_by_key(|status| rank(*status))
+            .unwrap_or(Status::Complete)
+    }
+}
+
+/// Minimum, mean and maximum over the statistics window.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Extent {
+    /// Smallest value.
+    #[serde(deserialize_with = "null_as_nan")]
+    pub min: f64,
+    /// Mean over time.
+    #[serde(deserialize_with = "null_as_nan")]
+    pub mean: f64,
+    /// Largest value.
+    #[serde(deserialize_with = "null_as_nan")]
+    pub max: f64,
+}
+
+impl Extent {
+    /// No value.
+    pub const NONE: Extent = Extent {
+        min: f64::NAN,
+        mean: f64::NAN,
+        max: f64::NAN,
+    };
+
+    /// The extent of one value.
+    pub fn of(value: f64) -> Self {
+        Extent {
+            min: value,
+            mean: value,
+            max: value,
+        }
+    }
+}
+
+/// A value and where along its line it occurs.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Located {
+    /// The value, in the unit that the key names.
+    #[serde(deserialize_with = "null_as_nan")]
+    pub value: f64,
+    /// Unstretched distance from end A [m].
+    #[serde(deserialize_with = "null_as_nan")]
+    pub arc_length_m: f64,
+}
+
+/// Summary of a study.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Version of Catenix that computed the results.
+    pub catenix_version: String,
+    /// Title of the model file.
+    pub title: String,
+    /// The study's remark, for example that its input is a calibration.
+    pub note: String,
+    /// Model file, as given.
+    pub model_file: String,
+    /// SHA-256 of the model file's text, in hexadecimal.
+    pub model_sha256: String,
+    /// How far the study came.
+    pub status: Status,
+    /// Load cases by name, in file order.
+    pub cases: IndexMap<String, CaseSummary>,
+}
+
+/// Summary of one load case.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CaseSummary {
+    /// One sentence; may be empty.
+    pub description: String,
+    /// How far the case came.
+    pub status: Status,
+    /// Why it failed.
+    pub error: Option<CaseError>,
+    /// Simulated time that was reached [s]; null when only statics ran.
+    pub simulated_s: Option<f64>,
+    /// First and last time of the window over which means and extremes are taken [s].
+    pub window_s: Option<[f64; 2]>,
+    /// Bodies by name.
+    pub bodies: IndexMap<String, BodySummary>,
+    /// Lines by name.
+    pub lines: IndexMap<String, LineSummary>,
+    /// Published figures beside the computed ones.
+    pub published: Vec<Comparison>,
+    /// Iterations of the static solution.
+    pub static_iterations: Option<usize>,
+    /// Largest residual force of the static solution [N].
+    pub static_residual_n: Option<f64>,
+    /// Accepted time steps.
+    pub steps: Option<usize>,
+    /// Time steps that were tried and discarded.
+    pub rejected_steps: Option<usize>,
+    /// Newton iterations over all time steps.
+    pub iterations: Option<usize>,
+    /// Factorisations of the Newton matrix over all time steps.
+    pub factorisations: Option<usize>,
+    /// Largest residual force left by an accepted step [N].
+    pub residual_n: Option<f64>,
+    /// Energy that the account does not explain, as a fraction of the work done [-].
+    pub energy_imbalance: Option<f64>,
+    /// Processor time of the case, statics and recording included [s].
+    pub cpu_seconds: Option<f64>,
+    /// Elapsed time of the case [s].
+    pub wall_seconds: Option<f64>,
+    /// Simulated time over elapsed time [-].
+    pub real_time_factor: Option<f64>,
+}
+
+/// Why a case failed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CaseError {
+    /// Stable identifier, of the form `statics::kind`.
+    pub code: String,
+    /// What happened: time, element, residual.
+    pub message: String,
+    /// What to try.
+    pub help: Option<String>,
+}
+
+/// Results of a free body: means over the window.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BodySummary {
+    /// Vessel against which the offsets are taken.
+    pub offset_vessel: Option<String>,
+    /// Position less that of the vessel, global x [m].
+    pub offset_x_m: Option<f64>,
+    /// The same along y [m].
+    pub offset_y_m: Option<f64>,
+    /// The same along z [m].
+    pub offset_z_m: Option<f64>,
+    /// Position of the origin, global x [m].
+    pub x_m: Option<f64>,
+    /// Position of the origin, global y [m].
+    pub y_m: Option<f64>,
+    /// Position of the origin, global z [m].
+    pub z_m: Option<f64>,
+    /// Angle of the body's axis from the vertical [deg].
+    pub tilt_deg: Option<f64>,
+}
+
+/// Results of a line.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LineSummary {
+    /// Unstretched length [m].
+    pub length_m: f64,
+    /// Number of elements.
+    pub elements: usize,
+    /// What the line does to its support at end A.
+    pub end_a: EndSummary,
+    /// What the line does to its support at end B.
+    pub end_b: EndSummary,
+    /// Smallest effective tension over the window and the line [N].
+    pub min_effective_tension_n: Option<Located>,
+    /// Largest effective tension over the window and the line [N].
+    pub max_effective_tension_n: Option<Located>,
+    /// Largest bending moment over the window and the line [N m].
+    pub max_bend_moment_n_m: Option<Located>,
+    /// Largest curvature over the window and the line [1/m].
+    pub max_curvature_1_m: Option<Located>,
+    /// Largest von Mises stress over the window and the line [Pa]; null without a wall.
+    pub max_von_mises_stress_pa: Option<Located>,
+}
+
+/// Force and direction at an end of a line, over the window.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EndSummary {
+    /// Force of the line on its support, global x [N].
+    pub force_x_n: Extent,
+    /// Force of the line on its support, global y [N].
+    pub force_y_n: Extent,
+    /// Force of the line on its support, global z [N].
+    pub force_z_n: Extent,
+    /// Effective tension [N].
+    pub effective_tension_n: Extent,
+    /// Angle between the line and the vertical [deg].
+    pub declination_deg: Extent,
+}
+
+/// A published figure and the computed one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Comparison {
+    /// Channel whose mean over the window is compared.
+    pub channel: String,
+    /// Unit of the three numbers.
+    pub unit: String,
+    /// Published value.
+    pub published: f64,
+    /// Computed mean; null when the case did not get that far.
+    pub computed: Option<f64>,
+    /// Computed less published.
+    pub difference: Option<f64>,
+    /// Where it was published.
+    pub source: String,
+}
+
+/// What a summary needs to know about a case besides its results; kept in the store, so that the
+/// summary of a killed run can still be made.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct CaseLayout {
+    pub(crate) description: String,
+    pub(crate) window_s: f64,
+    /// Name of each body and of the vessel that its offset is taken against.
+    pub(crate) bodies: Vec<(String, Option<String>)>,
+    pub(crate) lines: Vec<LineLayout>,
+    pub(crate) published: Vec<PublishedLayout>,
+}
+
+/// A line in [`CaseLayout`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct LineLayout {
+    pub(crate) name: String,
+    pub(crate) length_m: f64,
+    pub(crate) elements: usize,
+}
+
+/// A published value in [`CaseLayout`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PublishedLayout {
+    pub(crate) channel: String,
+    pub(crate) unit: String,
+    pub(crate) value: f64,
+    pub(crate) source: String,
+}
+
+/// Where a summary takes its statistics from.
+pub(crate) trait StatisticsSource {
+    /// Statistics of a channel; `None` when there are none.
+    fn channel(&self, name: &str) -> Option<Extent>;
+    /// Arc length and range graph of a quantity along a line; `None` when there is none.
+    fn line(&self, line: &str, quantity: LineQuantity) -> Option<(Vec<f64>, RangeGraph)>;
+}
+
+impl CaseSummary {
+    /// A case without results.
+    pub fn empty(description: &str, status: Status) -> Self {
+        CaseSummary {
+            description: description.to_owned(),
+            status,
+            error: None,
+            simulated_s: None,
+            window_s: None,
+            bodies: IndexMap::new(),
+            lines: IndexMap::new(),
+            published: Vec::new(),
+            static_iterations: None,
+            static_residual_n: None,
+            steps: None,
+            rejected_steps: None,
+            iterations: None,
+            factorisations: None,
+            residual_n: None,
+            energy_imbalance: None,
+            cpu_seconds: None,
+            wall_seconds: None,
+            real_time_factor: None,
+        }
+    }
+
+    /// Fills bodies, lines and published values from statistics.
+    pub(crate) fn fill(&mut self, layout: &CaseLayout, source: &dyn StatisticsSource) {
+        self.description = layout.description.clone();
+        self.bodies = layout
+            .bodies
+            .iter()
+            .map(|(name, vessel)| (name.clone(), body_summary(name, vessel, source)))
+            .collect();
+        self.lines = layout
+            .lines
+            .iter()
+            .map(|line| (line.name.clone(), line_summary(line, source)))
+            .collect();
+        self.published = layout
+            .published
+            .iter()
+            .map(|value| comparison(value, source))
+            .collect();
+    }
+}
+
+fn mean(source: &dyn StatisticsSource, channel: &str) -> Option<f64> {
+    source
+        .channel(channel)
+        .map(|extent| extent.mean)
+        .filter(|mean| mean.is_finite())
+}
+
+fn body_summary(name: &str, vessel: &Option<String>, source: &dyn StatisticsSource) -> BodySummary {
+    let position = |axis: Axis| mean(source, &format!("{name}.{}", axis.letter()));
+    let offset = |axis: Axis| mean(source, &format!("{name}.offset_{}", axis.letter()));
+    BodySummary {
+        offset_vessel: vessel.clone(),
+        offset_x_m: offset(Axis::X),
+        offset_y_m: offset(Axis::Y),
+        offset_z_m: offset(Axis::Z),
+        x_m: position(Axis::X),
+        y_m: position(Axis::Y),
+        z_m: position(Axis::Z),
+        tilt_deg: mean(source, &format!("{name}.tilt")),
+    }
+}
+
+fn line_summary(line: &LineLayout, source: &dyn StatisticsSource) -> LineSummary {
+    let end = |label: &str| {
+        let get = |quantity: &str| {
+            source
+                .channel(&format!("{}.{label}.{quantity}", line.name))
+                .unwrap_or(Extent::NONE)
+        };
+        EndSummary {
+            force_x_n: get("force_x"),
+            force_y_n: get("force_y"),
+            force_z_n: get("force_z"),
+            effective_tension_n: get("effective_tension"),
+            declination_deg: get("declination"),
+        }
+    };
+    let tension = source.line(&line.name, LineQuantity::EffectiveTension);
+    let largest = |quantity| {
+        let (arc_length, graph) = source.line(&line.name, quantity)?;
+        locate(&arc_length, &graph.max, f64::max)
+    };
+    LineSummary {
+        length_m: line.length_m,
+        elements: line.elements,
+        end_a: end("end_a"),
+        end_b: end("end_b"),
+        min_effective_tension_n: tension
+            .as_ref()
+            .and_then(|(arc_length, graph)| locate(arc_length, &graph.min, f64::min)),
+        max_effective_tension_n: tension
+            .as_ref()
+            .and_then(|(arc_length, graph)| locate(arc_length, &graph.max, f64::max)),
+        max_bend_moment_n_m: largest(LineQuantity::BendMoment),
+        max_curvature_1_m: largest(LineQuantity::Curvature),
+        max_von_mises_stress_pa: largest(LineQuantity::VonMisesStress),
+    }
+}
+
+/// The extreme of `values` that `choose` prefers, and where it is.
+fn locate(arc_length: &[f64], values: &[f64], choose: fn(f64, f64) -> f64) -> Option<Located> {
+    let value = values
+        .iter()
+        .copied()
+        .reduce(choose)
+        .filter(|value| value.is_finite())?;
+    let index = values.iter().position(|v| *v == value)?;
+    Some(Located {
+        value,
+        arc_length_m: *arc_length.get(index)?,
+    })
+}
+
+fn comparison(published: &PublishedLayout, source: &dyn StatisticsSource) -> Comparison {
+    let computed = mean(source, &published.channel);
+    Comparison {
+        channel: published.channel.clone(),
+        unit: published.unit.clone(),
+        published: published.value,
+        computed,
+        difference: computed.map(|computed| computed - published.value),
+        source: published.source.clone(),
+    }
+}
+
+/// JSON has no NaN: it is written as null and comes back as NaN.
+fn null_as_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::NAN))
+}

@@ -1,0 +1,250 @@
+//! A small study and a made-up motion whose every value is known in closed form.
+//!
+//! tests/read_back.py holds the same formulas, to check what xarray reads.
+#![allow(dead_code)]
+
+use std::path::Path;
+
+use catenix_model::{
+    Axis, Body, Channel, ChannelTarget, Current, DynamicsSettings, Environment, Figure, Line,
+    LineEnd, LineType, LoadCase, Model, OutputSettings, PipeWall, PublishedValue, Section,
+    StaticsSettings, StepControl, Study, Vessel,
+};
+use catenix_results::{
+    CaseOutcome, DynamicsFacts, Provenance, ResultStore, Sample, StaticsFacts, Status, Summary,
+};
+
+/// Elements of the line.
+pub const ELEMENTS: usize = 3;
+/// End of the motion [s].
+pub const DURATION_S: f64 = 20.0;
+/// Step, and interval of the histories [s].
+pub const STEP_S: f64 = 0.25;
+/// Interval of the fields [s].
+pub const FIELD_INTERVAL_S: f64 = 1.0;
+/// Statistics window [s].
+pub const WINDOW_S: f64 = 8.0;
+
+/// Value of a channel: the same for all channels of one kind.
+pub fn channel_value(target: ChannelTarget, time: f64) -> f64 {
+    match target {
+        ChannelTarget::BodyOffset(_, Axis::X) => -10.0 - time,
+        ChannelTarget::EndForce(_, end, Axis::X) => 1000.0 * (end as f64 + 1.0) + 10.0 * time,
+        _ => time,
+    }
+}
+
+/// Value of a line quantity at a node.
+pub fn line_value(quantity: usize, node: usize, time: f64) -> f64 {
+    1000.0 * quantity as f64 + 100.0 * node as f64 + time
+}
+
+/// A moment of the motion.
+pub struct Moment {
+    /// Simulated time [s].
+    pub time: f64,
+}
+
+impl Sample for Moment {
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn at_output_time(&self) -> bool {
+        true
+    }
+
+    fn at_field_time(&self) -> bool {
+        (self.time / FIELD_INTERVAL_S).fract() == 0.0
+    }
+
+    fn channel(&self, target: ChannelTarget) -> f64 {
+        channel_value(target, self.time)
+    }
+
+    fn line_quantities(&self, _line: usize, out: &mut [f64]) {
+        let nodes = ELEMENTS + 1;
+        for (index, value) in out.iter_mut().enumerate() {
+            *value = line_value(index / nodes, index % nodes, self.time);
+        }
+    }
+}
+
+/// Where the results come from.
+pub fn provenance() -> Provenance {
+    Provenance {
+        version: "0.1.0".into(),
+        model_file: "synthetic.toml".into(),
+        model_text: "title = \"synthetic\"\n".into(),
+    }
+}
+
+/// A study of the given cases.
+pub fn study(cases: &[&str]) -> Study {
+    let offset = Channel {
+        name: "buffer.offset_x".into(),
+        unit: "m",
+        target: ChannelTarget::BodyOffset(0, Axis::X),
+    };
+    let case = |name: &&str| LoadCase {
+        name: (*name).to_owned(),
+        description: format!("case {name}"),
+        model: model(),
+        published: vec![PublishedValue {
+            channel: offset.clone(),
+            value: -25.0,
+            source: "nobody".into(),
+        }],
+    };
+    Study {
+        title: "Synthetic".into(),
+        note: "Made up.".into(),
+        cases: cases.iter().map(case).collect(),
+        figures: vec![Figure {
+            name: "offset".into(),
+            title: "Offset".into(),
+            channel: offset,
+        }],
+    }
+}
+
+fn model() -> Model {
+    let pipe = LineType {
+        name: "pipe".into(),
+        outer_diameter: 0.2,
+        inner_diameter: 0.15,
+        mass: 50.0,
+        axial_stiffness: 1e9,
+        bending_stiffness: 1e6,
+        torsional_stiffness: 1e6,
+        shear_stiffness: None,
+        polar_inertia: 0.1,
+        structural_damping: 0.0,
+        normal_drag: 1.0,
+        axial_drag: 0.0,
+        normal_added_mass: 1.0,
+        axial_added_mass: 0.0,
+        content_density: 1025.0,
+        wall: Some(PipeWall {
+            outer_diameter: 0.2,
+            inner_diameter: 0.15,
+        }),
+    };
+    let body = Body {
+        name: "buffer".into(),
+        mass: 1e4,
+        inertia: [1e4; 3],
+        volume: 1.0,
+        centre_of_buoyancy: [0.0; 3],
+        length: 5.0,
+        normal_drag_area: 1.0,
+        axial_drag_area: 1.0,
+        normal_added_mass: 0.0,
+        axial_added_mass: 0.0,
+        initial_position: None,
+        offset_vessel: Some(0),
+    };
+    Model {
+        title: "Synthetic".into(),
+        environment: Environment {
+            gravity: 9.80665,
+            water_density: 1025.0,
+            water_depth: 1000.0,
+            current: Current::default(),
+            seabed: None,
+        },
+        line_types: vec![pipe],
+        lines: vec![Line {
+            name: "pipe".into(),
+            sections: vec![Section {
+                line_type: 0,
+                element_lengths: vec![10.0; ELEMENTS],
+            }],
+            attachments: Vec::new(),
+            ends: [LineEnd::Free, LineEnd::Free],
+        }],
+        bodies: vec![body],
+        vessels: vec![Vessel {
+            name: "ship".into(),
+            position: [0.0; 3],
+            heading: 0.0,
+            motions: Vec::new(),
+        }],
+        statics: StaticsSettings {
+            current: false,
+            tolerance: 1e-9,
+            max_iterations: 100,
+        },
+        dynamics: Some(DynamicsSettings {
+            duration: DURATION_S,
+            step: StepControl::Fixed(STEP_S),
+            spectral_radius: 0.8,
+            tolerance: 1e-9,
+            max_iterations: 20,
+            statistics_window: WINDOW_S,
+        }),
+        output: OutputSettings {
+            interval: STEP_S,
+            field_interval: FIELD_INTERVAL_S,
+            channels: Vec::new(),
+        },
+    }
+}
+
+/// The solver's account at a time.
+pub fn outcome(status: Status, end_time_s: f64) -> CaseOutcome {
+    CaseOutcome {
+        status,
+        error: None,
+        statics: Some(StaticsFacts {
+            iterations: 7,
+            residual_n: 0.5,
+        }),
+        dynamics: Some(DynamicsFacts {
+            end_time_s,
+            steps: (end_time_s / STEP_S) as usize,
+            rejected_steps: 1,
+            iterations: 160,
+            factorisations: 160,
+            residual_n: 0.25,
+            energy: vec![("kinetic_j", 1.5), ("elastic_j", f64::NAN)],
+            energy_imbalance: 1e-6,
+        }),
+        cpu_seconds: 0.5,
+        wall_seconds: 0.25,
+    }
+}
+
+/// Records every case up to `end_s` and ends it with `status`.
+pub fn write_store(directory: &Path, study: &Study, end_s: f64, status: Status) -> Summary {
+    let cases: Vec<&LoadCase> = study.cases.iter().collect();
+    let provenance = provenance();
+    let store = ResultStore::create(directory, study, &cases, &provenance).unwrap();
+    let mut summaries = indexmap::IndexMap::new();
+    for case in &study.cases {
+        let mut recorder = store.record_case(case);
+        recorder.record_static(case, &Moment { time: 0.0 }).unwrap();
+        for step in 0..=(end_s / STEP_S) as usize {
+            recorder
+                .record(&Moment {
+                    time: step as f64 * STEP_S,
+                })
+                .unwrap();
+        }
+        summaries.insert(
+            case.name.clone(),
+            recorder.finish(&outcome(status, end_s)).unwrap(),
+        );
+    }
+    let summary = Summary {
+        catenix_version: provenance.version.clone(),
+        title: study.title.clone(),
+        note: study.note.clone(),
+        model_file: provenance.model_file.clone(),
+        model_sha256: provenance.model_sha256(),
+        status,
+        cases: summaries,
+    };
+    store.finish(&summary).unwrap();
+    summary
+}
