@@ -8,6 +8,7 @@
 mod analysis;
 mod body;
 mod environment;
+pub mod file;
 mod line;
 mod motion;
 mod output;

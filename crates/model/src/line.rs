@@ -89,12 +89,18 @@ pub struct Line {
 impl Line {
     /// Unstretched length [m].
     pub fn length(&self) -> f64 {
-        self.sections.iter().flat_map(|section| &section.element_lengths).sum()
+        self.sections
+            .iter()
+            .flat_map(|section| &section.element_lengths)
+            .sum()
     }
 
     /// Number of elements over all sections.
     pub fn element_count(&self) -> usize {
-        self.sections.iter().map(|section| section.element_lengths.len()).sum()
+        self.sections
+            .iter()
+            .map(|section| section.element_lengths.len())
+            .sum()
     }
 }
 

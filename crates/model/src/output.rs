@@ -174,48 +174,82 @@ pub struct Figure {
 /// The channels that are always recorded, in a fixed order: vessels, bodies, line ends; then the
 /// user's own.
 pub fn all_channels(model: &Model) -> Vec<Channel> {
-    let mut channels = Vec::new();
-    let mut push = |name: String, unit, target| channels.push(Channel { name, unit, target });
-    for (index, vessel) in model.vessels.iter().enumerate() {
-        for axis in Axis::ALL {
-            let name = format!("{}.{}", vessel.name, axis.letter());
-            push(name, "m", ChannelTarget::VesselPosition(index, axis));
-        }
-    }
-    for (index, body) in model.bodies.iter().enumerate() {
-        for axis in Axis::ALL {
-            let name = format!("{}.{}", body.name, axis.letter());
-            push(name, "m", ChannelTarget::BodyPosition(index, axis));
-        }
-        if body.offset_vessel.is_some() {
-            for axis in Axis::ALL {
-                let name = format!("{}.offset_{}", body.name, axis.letter());
-                push(name, "m", ChannelTarget::BodyOffset(index, axis));
-            }
-        }
-        push(format!("{}.tilt", body.name), "deg", ChannelTarget::BodyTilt(index));
-    }
-    for (index, line) in model.lines.iter().enumerate() {
-        for (end, label) in ["end_a", "end_b"].into_iter().enumerate() {
-            let prefix = format!("{}.{label}", line.name);
-            for axis in Axis::ALL {
-                let name = format!("{prefix}.force_{}", axis.letter());
-                push(name, "N", ChannelTarget::EndForce(index, end, axis));
-            }
-            for axis in Axis::ALL {
-                let name = format!("{prefix}.moment_{}", axis.letter());
-                push(name, "N m", ChannelTarget::EndMoment(index, end, axis));
-            }
-            let name = format!("{prefix}.effective_tension");
-            push(name, "N", ChannelTarget::EndTension(index, end));
-            let name = format!("{prefix}.declination");
-            push(name, "deg", ChannelTarget::EndDeclination(index, end));
-        }
-    }
+    let vessels = model.vessels.iter().enumerate();
+    let bodies = model.bodies.iter().enumerate();
+    let lines = model.lines.iter().enumerate();
+    let mut channels: Vec<Channel> = vessels
+        .flat_map(|(index, vessel)| vessel_channels(index, &vessel.name))
+        .chain(bodies.flat_map(|(index, body)| {
+            body_channels(index, &body.name, body.offset_vessel.is_some())
+        }))
+        .chain(lines.flat_map(|(index, line)| line_channels(index, &line.name)))
+        .collect();
     for channel in &model.output.channels {
         if !channels.contains(channel) {
             channels.push(channel.clone());
         }
     }
     channels
+}
+
+/// Channels of a vessel or anchor.
+pub(crate) fn vessel_channels(index: usize, name: &str) -> Vec<Channel> {
+    per_axis(name, "", "m", |axis| {
+        ChannelTarget::VesselPosition(index, axis)
+    })
+}
+
+/// Channels of a body.
+pub(crate) fn body_channels(index: usize, name: &str, has_offset: bool) -> Vec<Channel> {
+    let mut channels = per_axis(name, "", "m", |axis| {
+        ChannelTarget::BodyPosition(index, axis)
+    });
+    if has_offset {
+        let offset = |axis| ChannelTarget::BodyOffset(index, axis);
+        channels.extend(per_axis(name, "offset_", "m", offset));
+    }
+    let target = ChannelTarget::BodyTilt(index);
+    channels.push(Channel {
+        name: format!("{name}.tilt"),
+        unit: "deg",
+        target,
+    });
+    channels
+}
+
+/// Channels of the two ends of a line.
+pub(crate) fn line_channels(index: usize, name: &str) -> Vec<Channel> {
+    let mut channels = Vec::new();
+    for (end, label) in ["end_a", "end_b"].into_iter().enumerate() {
+        let prefix = format!("{name}.{label}");
+        let force = |axis| ChannelTarget::EndForce(index, end, axis);
+        channels.extend(per_axis(&prefix, "force_", "N", force));
+        let moment = |axis| ChannelTarget::EndMoment(index, end, axis);
+        channels.extend(per_axis(&prefix, "moment_", "N m", moment));
+        channels.push(Channel {
+            name: format!("{prefix}.effective_tension"),
+            unit: "N",
+            target: ChannelTarget::EndTension(index, end),
+        });
+        channels.push(Channel {
+            name: format!("{prefix}.declination"),
+            unit: "deg",
+            target: ChannelTarget::EndDeclination(index, end),
+        });
+    }
+    channels
+}
+
+fn per_axis(
+    object: &str,
+    quantity: &str,
+    unit: &'static str,
+    target: impl Fn(Axis) -> ChannelTarget,
+) -> Vec<Channel> {
+    let channel = |axis: Axis| Channel {
+        name: format!("{object}.{quantity}{}", axis.letter()),
+        unit,
+        target: target(axis),
+    };
+    Axis::ALL.map(channel).into()
 }

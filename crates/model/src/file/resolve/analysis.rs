@@ -1,0 +1,131 @@
+//! Settings of the analyses.
+
+use crate::file::diagnostic::DiagnosticCode as Code;
+use crate::file::dimension::Dimensionless;
+use crate::file::log::Log;
+use crate::file::quantity::Quantity;
+use crate::file::tables::{DynamicsTable, StaticsTable};
+use crate::{DynamicsSettings, Motion, StaticsSettings, StepControl, Vessel};
+
+use super::Slot;
+
+/// Error per step that is allowed where the file does not say [-]; named in the key's description.
+const DEFAULT_ACCURACY: f64 = 2e-4;
+/// Smallest step where the file does not say [s]; named in the key's description.
+const DEFAULT_MIN_STEP: f64 = 1e-4;
+/// Largest step where the file does not say [s]; named in the key's description.
+const DEFAULT_MAX_STEP: f64 = 0.5;
+
+/// Resolves the settings of statics.
+pub(super) fn statics(table: &StaticsTable, log: &mut Log) -> StaticsSettings {
+    check_below_one("tolerance", &table.tolerance, log);
+    StaticsSettings {
+        current: table.current,
+        tolerance: table.tolerance.si,
+        max_iterations: table.max_iterations.value,
+    }
+}
+
+/// Resolves the settings of dynamics.
+pub(super) fn dynamics(
+    table: &DynamicsTable,
+    vessels: &[Slot<Vessel>],
+    log: &mut Log,
+) -> DynamicsSettings {
+    check_below_one("tolerance", &table.tolerance, log);
+    if table.spectral_radius.si > 1.0 {
+        let message = format!(
+            "`spectral_radius` lies between 0 and 1, but is {}",
+            table.spectral_radius.si
+        );
+        log.error(
+            Code::Value,
+            &table.spectral_radius.span,
+            message,
+            "0.8 suits most models",
+        );
+    }
+    let duration = table.duration.si;
+    let statistics_window = match &table.statistics_window {
+        Some(window) => {
+            if window.si > duration {
+                let message = format!(
+                    "the window of {} s is longer than the duration of {duration} s",
+                    window.si
+                );
+                log.error(
+                    Code::Value,
+                    &window.span,
+                    message,
+                    "shorten it, or simulate longer",
+                );
+            }
+            window.si
+        }
+        None => longest_period(vessels)
+            .unwrap_or(0.1 * duration)
+            .min(duration),
+    };
+    DynamicsSettings {
+        duration,
+        step: step_control(table, log),
+        spectral_radius: table.spectral_radius.si,
+        tolerance: table.tolerance.si,
+        max_iterations: table.max_iterations.value,
+        statistics_window,
+    }
+}
+
+fn step_control(table: &DynamicsTable, log: &mut Log) -> StepControl {
+    if let Some(step) = &table.step {
+        let adaptive = [
+            table.accuracy.as_ref().map(|q| (&q.span, "accuracy")),
+            table.min_step.as_ref().map(|q| (&q.span, "min_step")),
+            table.max_step.as_ref().map(|q| (&q.span, "max_step")),
+        ];
+        for (span, key) in adaptive.into_iter().flatten() {
+            let message = format!("`{key}` has no meaning beside `step`, which fixes the step");
+            log.error(Code::ConflictingKeys, span, message, "keep one of them");
+        }
+        return StepControl::Fixed(step.si);
+    }
+    if let Some(accuracy) = &table.accuracy {
+        check_below_one("accuracy", accuracy, log);
+    }
+    let min = table.min_step.as_ref().map_or(DEFAULT_MIN_STEP, |q| q.si);
+    let max = table.max_step.as_ref().map_or(DEFAULT_MAX_STEP, |q| q.si);
+    if min > max {
+        let message = format!("the smallest step, {min} s, is larger than the largest, {max} s");
+        let written = table.min_step.as_ref().or(table.max_step.as_ref());
+        let span = written.map_or(&table.key_span, |q| &q.span);
+        log.error(Code::Value, span, message, "write min_step below max_step");
+    }
+    let accuracy = table.accuracy.as_ref().map_or(DEFAULT_ACCURACY, |q| q.si);
+    StepControl::Adaptive { accuracy, min, max }
+}
+
+fn check_below_one<S>(key: &str, value: &Quantity<Dimensionless, S>, log: &mut Log) {
+    if value.si >= 1.0 {
+        let message = format!("`{key}` must be well below 1, but is {}", value.si);
+        log.error(
+            Code::Value,
+            &value.span,
+            message,
+            "write a small fraction such as 1e-6",
+        );
+    }
+}
+
+fn longest_period(vessels: &[Slot<Vessel>]) -> Option<f64> {
+    let motions = vessels
+        .iter()
+        .filter_map(|slot| slot.item.as_ref())
+        .flat_map(|v| &v.motions);
+    let acting = motions.filter_map(|motion| match motion {
+        Motion::Harmonic {
+            period, amplitude, ..
+        } if *amplitude > 0.0 => Some(*period),
+        _ => None,
+    });
+    acting.reduce(f64::max)
+}

@@ -1,0 +1,44 @@
+//! `[statics]` and `[dynamics]`.
+
+use crate::file::define::table;
+use crate::file::dimension::{Dimensionless, Time};
+use crate::file::quantity::{NonNegative, Positive};
+use crate::file::read::Count;
+
+table! {
+    /// How static equilibrium is sought.
+    pub(super) struct StaticsTable {
+        /// Whether the current acts in the static equilibrium. With `false` it acts from t = 0 on.
+        current: bool = true,
+        /// Largest residual force at any element, as a fraction of the system's reference force.
+        tolerance: Positive<Dimensionless> = 1e-7,
+        /// Most iterations before giving up.
+        max_iterations: Count = 2000,
+    }
+}
+
+table! {
+    /// How the motion is integrated. The step is chosen by its error; `step` fixes it instead.
+    pub(super) struct DynamicsTable {
+        /// Simulated time.
+        duration: Positive<Time>,
+        /// Constant step; absent: the step is chosen so that its error stays below `accuracy`.
+        step: Option<Positive<Time>>,
+        /// Error allowed per step, as a fraction of the system's reference length; absent: 2e-4.
+        accuracy: Option<Positive<Dimensionless>>,
+        /// Smallest step; absent: 1e-4 s.
+        min_step: Option<Positive<Time>>,
+        /// Largest step; absent: 0.5 s.
+        max_step: Option<Positive<Time>>,
+        /// Spectral radius at infinite frequency of generalised-alpha: 1 keeps, 0 removes what is
+        /// too fast for the step.
+        spectral_radius: NonNegative<Dimensionless> = 0.8,
+        /// Largest residual force at any element, as a fraction of the system's reference force.
+        tolerance: Positive<Dimensionless> = 1e-6,
+        /// Most Newton iterations per step before the step is cut.
+        max_iterations: Count = 12,
+        /// Time at the end over which means and extremes are reported; absent: the longest period
+        /// of the harmonic motions that act, or else the last 10 % of the duration.
+        statistics_window: Option<Positive<Time>>,
+    }
+}

@@ -1,0 +1,21 @@
+//! The tables of the model file, each defined once: reader, schema and reference page follow.
+
+mod analysis;
+mod body;
+mod environment;
+mod line;
+mod line_type;
+mod motion;
+mod output;
+mod study;
+
+pub(super) use analysis::{DynamicsTable, StaticsTable};
+pub(super) use body::{AnchorTable, BodyTable, VesselTable};
+pub(super) use environment::{CurrentPointTable, CurrentTable, EnvironmentTable, SeabedTable};
+pub(super) use line::{
+    AttachmentTable, ConnectionTable, EndTable, JointChoice, LineTable, SectionTable,
+};
+pub(super) use line_type::{GeneralTable, LineTypeTable, PipeTable};
+pub(super) use motion::{DegreeChoice, HarmonicTable, LegTable, MotionTable, TowTable};
+pub(super) use output::{FigureTable, OutputTable, PublishedTable};
+pub(super) use study::{CaseTable, ModelTable, StudyTable};
