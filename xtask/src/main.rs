@@ -43,11 +43,13 @@ fn main() -> ExitCode {
 }
 
 /// The folder of the workspace's `Cargo.toml`.
+///
+/// Cargo says at run time where the package is; the place where it was compiled may be another
+/// checkout that shares the target folder.
 fn workspace_root() -> PathBuf {
-    let xtask = Path::new(env!("CARGO_MANIFEST_DIR"));
-    xtask
-        .parent()
-        .map_or_else(|| xtask.to_path_buf(), Path::to_path_buf)
+    let xtask = std::env::var_os("CARGO_MANIFEST_DIR")
+        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
+    xtask.parent().map(Path::to_path_buf).unwrap_or(xtask)
 }
 
 fn report_tidy(root: &Path) -> ExitCode {

@@ -1,7 +1,9 @@
-//! The read-back check: a store that catenix wrote opens in xarray, with names, units and sizes.
+//! The read-back check: xarray opens the stores that the results crate writes, and finds every
+//! value, unit and dimension that was written, also after an interrupted and a killed run.
 //!
-//! It runs the built binary on a small model and hands the store to
-//! `crates/results/tests/read_back.py`, in a virtual environment of its own below the target folder.
+//! A program of the results crate writes stores whose values follow formulas;
+//! `crates/results/tests/read_back.py` reads them and knows the same formulas. Python and its
+//! packages live in a virtual environment of their own below the target folder.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,17 +16,48 @@ use crate::steps::{cargo, run_command};
 const SCRIPT: &str = "crates/results/tests/read_back.py";
 const REQUIREMENTS: &str = "xtask/read-back-requirements.txt";
 
-/// Writes a store and reads it back with Python.
+/// Writes stores and reads them back with Python.
 pub(crate) fn run(root: &Path) -> Result<(), String> {
-    if !root.join(SCRIPT).exists() {
-        println!("    {SCRIPT} does not exist yet; nothing to read back");
-        return Ok(());
-    }
     let target = target_folder(root)?;
     let python = environment(root, &target.join("read-back-venv"))?;
-    run_command(&mut cargo(root, &["build", "--package", "catenix"]))?;
-    let store = write_store(root, &target)?;
-    run_command(Command::new(python).arg(root.join(SCRIPT)).arg(store))
+    let stores = empty_folder(&target.join("read-back-stores"))?;
+    write_stores(root, &stores)?;
+    run_command(Command::new(python).arg(root.join(SCRIPT)).arg(&stores))
+}
+
+/// Runs the program that writes the stores. It writes the last one half and then aborts, as a
+/// killed run would; any other end is a failure.
+fn write_stores(root: &Path, stores: &Path) -> Result<(), String> {
+    let example = [
+        "--package",
+        "catenix-results",
+        "--example",
+        "synthetic_store",
+    ];
+    run_command(cargo(root, &["build", "--quiet"]).args(example))?;
+    let status = cargo(root, &["run", "--quiet"])
+        .args(example)
+        .arg("--")
+        .arg(stores)
+        .status()
+        .map_err(|error| format!("the stores could not be written: {error}"))?;
+    // Killed by a signal, a program has no exit code; Windows gives an aborted one a code as well.
+    let aborted = status.code().is_none() || (cfg!(windows) && !status.success());
+    if aborted && stores.join("killed").exists() {
+        return Ok(());
+    }
+    Err(format!(
+        "the program that writes the stores should have aborted in the last one: {status}"
+    ))
+}
+
+fn empty_folder(folder: &Path) -> Result<PathBuf, String> {
+    let failed = |error: std::io::Error| format!("cannot empty {}: {error}", folder.display());
+    if folder.exists() {
+        fs::remove_dir_all(folder).map_err(failed)?;
+    }
+    fs::create_dir_all(folder).map_err(failed)?;
+    Ok(folder.to_path_buf())
 }
 
 fn target_folder(root: &Path) -> Result<PathBuf, String> {
@@ -75,8 +108,4 @@ fn environment(root: &Path, folder: &Path) -> Result<PathBuf, String> {
     })?;
     fs::write(&stamp, wanted).map_err(|error| format!("cannot write the stamp: {error}"))?;
     Ok(python)
-}
-
-fn write_store(_root: &Path, _target: &Path) -> Result<PathBuf, String> {
-    Err("the binary does not write a store yet".to_owned())
 }
