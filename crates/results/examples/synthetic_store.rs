@@ -1,5 +1,7 @@
 //! Writes stores of known content for tests/read_back.py: a complete one, an interrupted one and
 //! one whose writer died.
+// An example that fails may do so loudly.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use std::path::PathBuf;
 

@@ -3,12 +3,14 @@
 //! Data flows in from a solver through the [`Sample`] trait: a [`ResultStore`] hands out one
 //! [`CaseRecorder`] per load case, which writes histories, line fields, range graphs, the static
 //! state and the solver's account while the case runs. [`StoredStudy`] reads a store back, whether
-//! it was finished, interrupted or killed, and makes the same [`Summary`] from it.
+//! it was finished, interrupted or killed, and makes the same [`Summary`] from it. [`figure`] draws
+//! one channel of all cases against time.
 //!
 //! The layout of the store is in docs/results.md; it opens in xarray as it is.
 
 mod case_arrays;
 mod error;
+pub mod figure;
 mod layout;
 mod outcome;
 mod recorder;

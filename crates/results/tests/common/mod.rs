@@ -2,6 +2,8 @@
 //!
 //! tests/read_back.py holds the same formulas, to check what xarray reads.
 #![allow(dead_code)]
+// A panic is how a test fails, and this module is nothing but tests.
+#![allow(clippy::unwrap_used)]
 
 use std::path::Path;
 

@@ -1,0 +1,152 @@
+//! Drawing to PNG pixels.
+
+use tiny_skia::{
+    Color, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, StrokeDash,
+    Transform,
+};
+use ttf_parser::OutlineBuilder;
+
+use super::drawing::{Anchor, Colour, Drawing, Mark, Text};
+use super::font;
+use crate::StoreError;
+
+impl Drawing {
+    /// The drawing as a PNG file, `scale` pixels per unit of the drawing.
+    pub fn to_png(&self, scale: f64) -> Result<Vec<u8>, StoreError> {
+        let fail = |what: String| StoreError::Figure {
+            name: self.title.clone(),
+            what,
+        };
+        let (width, height) = ((self.width * scale).ceil(), (self.height * scale).ceil());
+        let mut pixmap = Pixmap::new(width as u32, height as u32).ok_or_else(|| {
+            fail(format!(
+                "{width} x {height} pixels is no size for a picture"
+            ))
+        })?;
+        pixmap.fill(Color::WHITE);
+        let transform = Transform::from_scale(scale as f32, scale as f32);
+        for mark in &self.marks {
+            match mark {
+                Mark::Path { points, stroke } => {
+                    let dash = stroke.dash.iter().map(|length| *length as f32).collect();
+                    let stroke_style = Stroke {
+                        width: stroke.width as f32,
+                        line_join: LineJoin::Round,
+                        line_cap: LineCap::Butt,
+                        dash: StrokeDash::new(dash, 0.0),
+                        ..Stroke::default()
+                    };
+                    if let Some(path) = polyline(points) {
+                        pixmap.stroke_path(
+                            &path,
+                            &paint(stroke.colour),
+                            &stroke_style,
+                            transform,
+                            None,
+                        );
+                    }
+                }
+                Mark::Text(text) => {
+                    if let Some(path) = outline(text) {
+                        let paint = paint(text.colour);
+                        pixmap.fill_path(&path, &paint, FillRule::Winding, transform, None);
+                    }
+                }
+            }
+        }
+        pixmap.encode_png().map_err(|error| fail(error.to_string()))
+    }
+}
+
+fn paint(colour: Colour) -> Paint<'static> {
+    let mut paint = Paint::default();
+    paint.set_color_rgba8(colour[0], colour[1], colour[2], 255);
+    paint.anti_alias = true;
+    paint
+}
+
+fn polyline(points: &[(f64, f64)]) -> Option<Path> {
+    let mut builder = PathBuilder::new();
+    for (index, (x, y)) in points.iter().enumerate() {
+        if index == 0 {
+            builder.move_to(*x as f32, *y as f32);
+        } else {
+            builder.line_to(*x as f32, *y as f32);
+        }
+    }
+    builder.finish()
+}
+
+/// The outlines of all glyphs of a text.
+fn outline(text: &Text) -> Option<Path> {
+    let face = font::face(text.bold)?;
+    let scale = text.size / f64::from(face.units_per_em());
+    let width = font::text_width(&text.content, text.size, text.bold);
+    let shift = match text.anchor {
+        Anchor::Start => 0.0,
+        Anchor::Middle => -0.5 * width,
+        Anchor::End => -width,
+    };
+    let mut pen = Pen {
+        builder: PathBuilder::new(),
+        origin: text.at,
+        along: shift,
+        scale,
+        upwards: text.upwards,
+    };
+    for character in text.content.chars() {
+        // Glyph 0 is the empty box that stands for a character which the font does not have.
+        face.outline_glyph(face.glyph_index(character).unwrap_or_default(), &mut pen);
+        pen.along += font::advance(&face, character) * scale;
+    }
+    pen.builder.finish()
+}
+
+/// Places glyph outlines along the baseline.
+struct Pen {
+    builder: PathBuilder,
+    origin: (f64, f64),
+    along: f64,
+    scale: f64,
+    upwards: bool,
+}
+
+impl Pen {
+    fn place(&self, x: f32, y: f32) -> (f32, f32) {
+        let along = self.along + f64::from(x) * self.scale;
+        let up = f64::from(y) * self.scale;
+        let (x, y) = if self.upwards {
+            (self.origin.0 - up, self.origin.1 - along)
+        } else {
+            (self.origin.0 + along, self.origin.1 - up)
+        };
+        (x as f32, y as f32)
+    }
+}
+
+impl OutlineBuilder for Pen {
+    fn move_to(&mut self, x: f32, y: f32) {
+        let (x, y) = self.place(x, y);
+        self.builder.move_to(x, y);
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        let (x, y) = self.place(x, y);
+        self.builder.line_to(x, y);
+    }
+
+    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
+        let ((x1, y1), (x, y)) = (self.place(x1, y1), self.place(x, y));
+        self.builder.quad_to(x1, y1, x, y);
+    }
+
+    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+        let ((x1, y1), (x2, y2)) = (self.place(x1, y1), self.place(x2, y2));
+        let (x, y) = self.place(x, y);
+        self.builder.cubic_to(x1, y1, x2, y2, x, y);
+    }
+
+    fn close(&mut self) {
+        self.builder.close();
+    }
+}
