@@ -81,6 +81,11 @@ pub trait ImplicitSystem {
     /// The frame whose pivot is singular.
     fn solve(&mut self, residual: &[Vector6], increment: &mut [Vector6]) -> Result<(), usize>;
 
+    /// Told of the increment that is about to be applied (the last solution, perhaps shortened).
+    fn moving(&mut self, increment: &[Vector6]) {
+        let _ = increment;
+    }
+
     /// The largest residual.
     fn residual_size(&self, residual: &[Vector6]) -> ResidualSize;
 }
@@ -262,6 +267,7 @@ impl GeneralisedAlpha {
                     }
                 })?;
             iterations += 1;
+            system.moving(&self.increment);
             self.correct(step);
         }
     }

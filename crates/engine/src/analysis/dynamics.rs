@@ -1,0 +1,355 @@
+//! Motion in time from a static equilibrium.
+//!
+//! Source: docs/theory/integration.md.
+
+use std::ops::ControlFlow;
+
+use catenix_model::{DynamicsSettings, StepControl};
+use catenix_numerics::{
+    AlphaParameters, GeneralisedAlpha, ImplicitSystem, MotionState, NewtonFailure, NewtonSettings,
+    TangentWeights, Vector6,
+};
+use thiserror::Error;
+
+use super::energy::{EnergyAccount, EnergyLedger};
+use super::statics::StaticSolution;
+use crate::system::{FrameOwner, StepView, System, SystemSolver};
+
+/// Smallest step after failed Newton iterations, over the step that was asked for.
+const SMALLEST_CUT: f64 = 1e-4;
+/// Share of the allowed error that the next step aims at.
+const SAFETY: f64 = 0.85;
+/// Weight of the mass that drowns stiffness and damping when accelerations are found [1/s2].
+const MASS_ONLY: f64 = 1e14;
+
+/// What the integration took.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct SolverStatistics {
+    /// Accepted steps.
+    pub steps: usize,
+    /// Steps repeated with a smaller size.
+    pub rejected_steps: usize,
+    /// Newton iterations, rejected steps included.
+    pub iterations: usize,
+    /// Factorisations of the iteration matrix.
+    pub factorisations: usize,
+    /// Largest residual force at the end of any accepted step [N].
+    pub largest_residual_n: f64,
+}
+
+/// The outcome of a simulation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DynamicsReport {
+    /// Solver statistics.
+    pub statistics: SolverStatistics,
+    /// Energy account.
+    pub energy: EnergyAccount,
+    /// Time that was reached [s].
+    pub end_time_s: f64,
+    /// Whether the observer stopped it.
+    pub interrupted: bool,
+}
+
+/// Why a simulation ended early.
+#[derive(Debug, Clone, Error, PartialEq)]
+#[non_exhaustive]
+pub enum DynamicsError {
+    /// The model has no `[dynamics]`.
+    #[error("the model describes no motion: add a [dynamics] table with a duration")]
+    NoDynamics,
+    /// Newton's method failed at the smallest step.
+    #[error(
+        "no solution at t = {time_s:.4} s: after {iterations} iterations the residual is \
+         {residual_n:.3e} N (allowed {allowed_n:.3e} N) at {owner}, with a step of {step_s:.2e} s. \
+         What to try: shorter elements where the line bends, some structural_damping, a longer ramp \
+         of the motions, or a smaller step"
+    )]
+    NotConverged {
+        /// Time at the end of the failed step [s].
+        time_s: f64,
+        /// Step size [s].
+        step_s: f64,
+        /// Newton iterations of the last attempt.
+        iterations: usize,
+        /// Residual when it was given up [N].
+        residual_n: f64,
+        /// Residual allowed [N].
+        allowed_n: f64,
+        /// Where it is.
+        owner: FrameOwner,
+        /// What was done until then.
+        report: Box<DynamicsReport>,
+    },
+}
+
+impl DynamicsError {
+    /// What was done until the failure, if anything.
+    pub fn report(&self) -> Option<&DynamicsReport> {
+        match self {
+            DynamicsError::NotConverged { report, .. } => Some(report),
+            DynamicsError::NoDynamics => None,
+        }
+    }
+}
+
+/// Integrates the motion from `start`.
+///
+/// `observer` is called at t = 0 and after every accepted step, and may stop the simulation.
+///
+/// # Errors
+/// [`DynamicsError`]; the observer has seen every step until then.
+pub fn simulate(
+    system: &System,
+    start: &StaticSolution<'_>,
+    observer: &mut dyn FnMut(&StepView<'_>) -> ControlFlow<()>,
+) -> Result<DynamicsReport, DynamicsError> {
+    let settings = system
+        .model()
+        .dynamics
+        .as_ref()
+        .ok_or(DynamicsError::NoDynamics)?;
+    let mut solver = SystemSolver::new(system, true);
+    let mut state = MotionState::at_rest(start.configuration().clone());
+    find_accelerations(&mut solver, &mut state);
+    let parameters = AlphaParameters::with_spectral_radius(settings.spectral_radius);
+    let integrator = GeneralisedAlpha::new(parameters, state);
+    let ledger = EnergyLedger::new(solver.energy_terms(0.0, integrator.state()));
+    Simulation {
+        settings,
+        newton: NewtonSettings {
+            tolerance_newtons: settings.tolerance * system.reference_force(),
+            max_iterations: settings.max_iterations,
+        },
+        solver,
+        integrator,
+        ledger,
+        statistics: SolverStatistics::default(),
+        time: 0.0,
+    }
+    .run(observer)
+}
+
+/// Accelerations that satisfy the equations of motion at t = 0.
+fn find_accelerations(solver: &mut SystemSolver<'_>, state: &mut MotionState) {
+    let n = state.configuration.len();
+    let mut residual = vec![Vector6::zeros(); n];
+    let mut increment = vec![Vector6::zeros(); n];
+    let weights = TangentWeights {
+        velocity: 0.0,
+        acceleration: MASS_ONLY,
+        rotation: None,
+    };
+    solver.begin();
+    solver.assemble(0.0, state, Some(&weights), &mut residual);
+    // A massless frame has no acceleration of its own; it starts from zero.
+    if solver.solve(&residual, &mut increment).is_ok() {
+        for (acceleration, d) in state.acceleration.iter_mut().zip(&increment) {
+            *acceleration = d * MASS_ONLY;
+        }
+    }
+    solver.assemble(0.0, state, None, &mut residual);
+}
+
+struct Simulation<'s> {
+    settings: &'s DynamicsSettings,
+    newton: NewtonSettings,
+    solver: SystemSolver<'s>,
+    integrator: GeneralisedAlpha,
+    ledger: EnergyLedger,
+    statistics: SolverStatistics,
+    time: f64,
+}
+
+impl Simulation<'_> {
+    fn run(
+        mut self,
+        observer: &mut dyn FnMut(&StepView<'_>) -> ControlFlow<()>,
+    ) -> Result<DynamicsReport, DynamicsError> {
+        let mut events = self.events();
+        let wanted = match self.settings.step {
+            StepControl::Fixed(step) => step,
+            StepControl::Adaptive { max, .. } => max,
+        };
+        let mut interrupted = self.show(observer, 0.0, true, true).is_break();
+        // The size that the controller asks for; steps actually taken may be shorter.
+        let mut size = match self.settings.step {
+            StepControl::Fixed(step) => step,
+            StepControl::Adaptive { min, max, .. } => (0.05 * max).max(min),
+        };
+        while !interrupted && let Some(event) = events.next_after(self.time) {
+            let span = event.time - self.time;
+            let pieces = (span / size - 1e-6).ceil().max(1.0);
+            let step = span / pieces;
+            let end = if pieces == 1.0 {
+                event.time
+            } else {
+                self.time + step
+            };
+            let result = self
+                .integrator
+                .advance(&mut self.solver, end, step, &self.newton);
+            let outcome = match result {
+                Ok(outcome) => outcome,
+                Err(failure) => {
+                    self.statistics.iterations += failure.iterations;
+                    self.statistics.rejected_steps += 1;
+                    size = 0.25 * step;
+                    if size < SMALLEST_CUT * wanted {
+                        return Err(self.failed(end, step, &failure));
+                    }
+                    continue;
+                }
+            };
+            self.statistics.iterations += outcome.iterations;
+            match self.next_size(step, size, outcome.local_error, outcome.iterations) {
+                Ok(next) => size = next,
+                Err(smaller) => {
+                    self.statistics.rejected_steps += 1;
+                    size = smaller;
+                    continue;
+                }
+            }
+            self.integrator.accept();
+            self.time = end;
+            self.statistics.steps += 1;
+            self.statistics.largest_residual_n = self
+                .statistics
+                .largest_residual_n
+                .max(outcome.residual.newtons);
+            self.ledger
+                .add(step, self.solver.energy_terms(end, self.integrator.state()));
+            let due = pieces == 1.0;
+            interrupted = self
+                .show(observer, step, due && event.output, due && event.field)
+                .is_break();
+        }
+        Ok(self.report(interrupted))
+    }
+
+    /// The size to ask for after a converged step, or a smaller one to repeat it with.
+    fn next_size(
+        &self,
+        step: f64,
+        asked: f64,
+        local_error: f64,
+        iterations: usize,
+    ) -> Result<f64, f64> {
+        match self.settings.step {
+            StepControl::Fixed(fixed) => Ok((2.0 * asked).min(fixed)),
+            StepControl::Adaptive { accuracy, min, max } => {
+                let allowed = accuracy * self.solver.system().reference_length();
+                // The local error of a second-order method grows with the cube of the step.
+                let ratio = (allowed / local_error.max(1e-30)).cbrt();
+                if ratio < 1.0 && step > min * (1.0 + 1e-9) {
+                    return Err((SAFETY * ratio * step).clamp((0.2 * step).max(min), step));
+                }
+                let mut factor = (SAFETY * ratio).clamp(0.5, 1.5);
+                if iterations > self.settings.max_iterations / 2 {
+                    factor = factor.min(1.0);
+                }
+                let proposal = (step * factor).clamp(min, max);
+                // A step cut short by an output time says nothing against the size asked for.
+                Ok(if factor >= 1.0 {
+                    proposal.max(asked.min(step * 1.5))
+                } else {
+                    proposal
+                })
+            }
+        }
+    }
+
+    /// Shows the current state, evaluated anew so that results belong to it.
+    fn show(
+        &mut self,
+        observer: &mut dyn FnMut(&StepView<'_>) -> ControlFlow<()>,
+        step: f64,
+        at_output_time: bool,
+        at_field_time: bool,
+    ) -> ControlFlow<()> {
+        observer(&StepView {
+            solver: &self.solver,
+            state: self.integrator.state(),
+            time: self.time,
+            step,
+            at_output_time,
+            at_field_time,
+        })
+    }
+
+    fn report(&self, interrupted: bool) -> DynamicsReport {
+        let factorisations = self.solver.factorisations();
+        DynamicsReport {
+            statistics: SolverStatistics {
+                factorisations,
+                ..self.statistics
+            },
+            energy: self.ledger.account(),
+            end_time_s: self.time,
+            interrupted,
+        }
+    }
+
+    fn failed(&self, time_s: f64, step_s: f64, failure: &NewtonFailure) -> DynamicsError {
+        DynamicsError::NotConverged {
+            time_s,
+            step_s,
+            iterations: failure.iterations,
+            residual_n: failure.residual.newtons,
+            allowed_n: self.newton.tolerance_newtons,
+            owner: self.solver.system().owner(failure.residual.frame),
+            report: Box::new(self.report(false)),
+        }
+    }
+
+    fn events(&self) -> Events {
+        let output = &self.solver.system().model().output;
+        let mut extra: Vec<f64> = self.solver.system().event_times().collect();
+        extra.retain(|time| *time > 0.0 && *time < self.settings.duration);
+        extra.sort_by(f64::total_cmp);
+        Events {
+            output: output.interval,
+            field: output.field_interval,
+            extra,
+            duration: self.settings.duration,
+        }
+    }
+}
+
+/// Times at which a step must end.
+struct Events {
+    output: f64,
+    field: f64,
+    extra: Vec<f64>,
+    duration: f64,
+}
+
+struct Event {
+    time: f64,
+    output: bool,
+    field: bool,
+}
+
+impl Events {
+    /// The next time after `now`; `None` at the end.
+    fn next_after(&mut self, now: f64) -> Option<Event> {
+        let slack = 1e-9 * self.duration;
+        if now >= self.duration - slack {
+            return None;
+        }
+        let multiple = |interval: f64| ((now + slack) / interval).floor() * interval + interval;
+        let next_output = multiple(self.output).min(self.duration);
+        let next_field = multiple(self.field).min(self.duration);
+        let next_extra = self
+            .extra
+            .iter()
+            .copied()
+            .find(|&time| time > now + slack)
+            .unwrap_or(f64::INFINITY);
+        let time = next_output.min(next_field).min(next_extra);
+        Some(Event {
+            time,
+            output: next_output <= time + slack,
+            field: next_field <= time + slack,
+        })
+    }
+}

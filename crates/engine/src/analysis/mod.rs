@@ -1,0 +1,6 @@
+//! Analyses: static equilibrium and motion.
+
+pub mod dynamics;
+pub mod energy;
+mod free_motion;
+pub mod statics;

@@ -1,0 +1,352 @@
+//! Static equilibrium from any first shape.
+//!
+//! Pseudo-transient continuation: every step is the backward-Euler step of a system that starts at
+//! rest, with its real masses. For small steps that is a short move towards lower energy, for
+//! large ones it is Newton's method; the step grows as long as Newton converges.
+//!
+//! Source: docs/theory/statics.md, eqs. (1) to (4).
+
+use std::ops::ControlFlow;
+
+use catenix_numerics::{
+    Configuration, ImplicitSystem, Matrix3, MotionState, ResidualSize, TangentWeights, Vector6, so3,
+};
+use thiserror::Error;
+
+use super::free_motion;
+use crate::system::{FrameOwner, StepView, System, SystemSolver};
+
+/// Newton iterations of one pseudo-step before it is cut.
+const STEP_ITERATIONS: usize = 12;
+/// Shortened iterations of one pseudo-step before it is cut: the step is too large.
+const SHORTENED_ITERATIONS: usize = 3;
+/// Largest rotation of a frame in one iteration [rad].
+const ROTATION_LIMIT: f64 = 0.4;
+/// Residual at which an intermediate pseudo-step is good enough, over the reference force.
+const STEP_TOLERANCE: f64 = 1e-5;
+/// Pseudo-step beyond which the inertia term no longer matters [s].
+const LARGEST_STEP: f64 = 1e5;
+/// Pseudo-step below which the search is hopeless [s].
+const SMALLEST_STEP: f64 = 1e-4;
+
+/// How far the search for equilibrium is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StaticsProgress {
+    /// Newton iterations so far.
+    pub iteration: usize,
+    /// Largest residual force [N].
+    pub residual_n: f64,
+    /// Largest move of a frame in the last iteration [m].
+    pub largest_move_m: f64,
+}
+
+/// A static equilibrium.
+#[derive(Debug, Clone)]
+pub struct StaticSolution<'a> {
+    solver: SystemSolver<'a>,
+    state: MotionState,
+    /// Newton iterations that it took.
+    pub iterations: usize,
+    /// Largest residual force [N].
+    pub residual_n: f64,
+    /// Remarks for the user, for example on motions that nothing resists.
+    pub warnings: Vec<String>,
+}
+
+impl StaticSolution<'_> {
+    /// Results of the equilibrium.
+    pub fn view(&self) -> StepView<'_> {
+        StepView {
+            solver: &self.solver,
+            state: &self.state,
+            time: 0.0,
+            step: 0.0,
+            at_output_time: true,
+            at_field_time: true,
+        }
+    }
+
+    /// Positions and rotations.
+    pub fn configuration(&self) -> &Configuration {
+        &self.state.configuration
+    }
+}
+
+/// Why no equilibrium was found.
+#[derive(Debug, Clone, Error, PartialEq)]
+#[non_exhaustive]
+pub enum StaticsError {
+    /// The search ended without equilibrium.
+    #[error(
+        "no static equilibrium after {iterations} iterations: the residual is still \
+         {residual_n:.3e} N (allowed {allowed_n:.3e} N) at {owner}. Check that the system can hang \
+         in equilibrium (nothing drifts away, lines are long enough), or give bodies an \
+         initial_position nearer to where they end up"
+    )]
+    NoEquilibrium {
+        /// Iterations done.
+        iterations: usize,
+        /// Largest residual [N].
+        residual_n: f64,
+        /// Residual allowed [N].
+        allowed_n: f64,
+        /// Where it is.
+        owner: FrameOwner,
+    },
+    /// Equilibrium leaves a motion that nothing resists.
+    #[error(
+        "the equilibrium is not unique: {owner} can move without any resistance{how}. Hold it \
+         with a joint that keeps this motion (fixed instead of hinge or ball), or with another line"
+    )]
+    FreeMotion {
+        /// What moves most.
+        owner: FrameOwner,
+        /// In which direction, starting with a space; may be empty.
+        how: String,
+    },
+    /// The caller stopped the search.
+    #[error("stopped by the user after {iterations} iterations")]
+    Interrupted {
+        /// Iterations done.
+        iterations: usize,
+    },
+}
+
+/// Finds the static equilibrium at t = 0.
+///
+/// `progress` is called after every iteration and may stop the search.
+///
+/// # Errors
+/// [`StaticsError`] when there is no equilibrium to be found, or it is not unique.
+pub fn solve_statics<'a>(
+    system: &'a System,
+    progress: &mut dyn FnMut(&StaticsProgress) -> ControlFlow<()>,
+) -> Result<StaticSolution<'a>, StaticsError> {
+    let settings = &system.model().statics;
+    let solver = SystemSolver::new(system, settings.current);
+    let mut search = Search::new(solver, system.first_shape().clone(), progress);
+    let allowed = settings.tolerance * system.reference_force();
+    search.run(allowed, settings.max_iterations)?;
+    let Search {
+        mut solver,
+        mut state,
+        iterations,
+        residual,
+        ..
+    } = search;
+    let mut warnings = Vec::new();
+    match free_motion::find(&mut solver, &mut state) {
+        Some(free) if free.without_load => warnings.push(free.warning(system)),
+        Some(free) => {
+            return Err(StaticsError::FreeMotion {
+                owner: system.owner(free.frame),
+                how: free.direction(),
+            });
+        }
+        None => {}
+    }
+    Ok(StaticSolution {
+        solver,
+        state,
+        iterations,
+        residual_n: residual.newtons,
+        warnings,
+    })
+}
+
+/// The search with its state.
+struct Search<'s, 'a> {
+    solver: SystemSolver<'a>,
+    progress: &'s mut dyn FnMut(&StaticsProgress) -> ControlFlow<()>,
+    state: MotionState,
+    /// Start of the current pseudo-step.
+    start: Configuration,
+    travel: Vec<Vector6>,
+    weights: Vec<Matrix3>,
+    residual_vector: Vec<Vector6>,
+    increment: Vec<Vector6>,
+    iterations: usize,
+    residual: ResidualSize,
+}
+
+/// How a pseudo-step ended.
+enum StepEnd {
+    Converged { iterations: usize },
+    Failed,
+}
+
+impl<'s, 'a> Search<'s, 'a> {
+    fn new(
+        solver: SystemSolver<'a>,
+        shape: Configuration,
+        progress: &'s mut dyn FnMut(&StaticsProgress) -> ControlFlow<()>,
+    ) -> Self {
+        let n = shape.len();
+        Search {
+            solver,
+            progress,
+            start: shape.clone(),
+            state: MotionState::at_rest(shape),
+            travel: vec![Vector6::zeros(); n],
+            weights: vec![Matrix3::identity(); n],
+            residual_vector: vec![Vector6::zeros(); n],
+            increment: vec![Vector6::zeros(); n],
+            iterations: 0,
+            residual: ResidualSize {
+                newtons: f64::INFINITY,
+                frame: 0,
+            },
+        }
+    }
+
+    fn run(&mut self, allowed: f64, max_iterations: usize) -> Result<(), StaticsError> {
+        let system = self.solver.system();
+        let gravity = system.model().environment.gravity.max(0.1);
+        let coarse = allowed.max(STEP_TOLERANCE * system.reference_force());
+        let mut tau = 0.1 * (system.reference_length() / gravity).sqrt();
+        loop {
+            match self.pseudo_step(tau, coarse)? {
+                StepEnd::Converged { iterations } => {
+                    self.static_residual();
+                    if self.residual.newtons <= allowed {
+                        return Ok(());
+                    }
+                    let growth = match iterations {
+                        0..=3 => 2.5,
+                        4..=5 => 1.6,
+                        _ => 1.2,
+                    };
+                    tau = (tau * growth).min(LARGEST_STEP);
+                    if tau == LARGEST_STEP && self.polish(allowed)? {
+                        return Ok(());
+                    }
+                }
+                StepEnd::Failed => {
+                    self.state.configuration.copy_from(&self.start);
+                    tau *= 0.4;
+                }
+            }
+            if tau < SMALLEST_STEP || self.iterations > max_iterations {
+                self.static_residual();
+                return Err(StaticsError::NoEquilibrium {
+                    iterations: self.iterations,
+                    residual_n: self.residual.newtons,
+                    allowed_n: allowed,
+                    owner: system.owner(self.residual.frame),
+                });
+            }
+        }
+    }
+
+    /// Full Newton steps to the last digit; whether they got there.
+    fn polish(&mut self, allowed: f64) -> Result<bool, StaticsError> {
+        let done = matches!(
+            self.pseudo_step(LARGEST_STEP, allowed)?,
+            StepEnd::Converged { .. }
+        );
+        if !done {
+            self.state.configuration.copy_from(&self.start);
+        }
+        self.static_residual();
+        Ok(self.residual.newtons <= allowed)
+    }
+
+    /// Residual without the pseudo-inertia.
+    fn static_residual(&mut self) {
+        self.state.acceleration.fill(Vector6::zeros());
+        self.solver
+            .assemble(0.0, &self.state, None, &mut self.residual_vector);
+        self.residual = self.solver.residual_size(&self.residual_vector);
+    }
+
+    /// One backward-Euler step of size `tau` from rest.
+    fn pseudo_step(&mut self, tau: f64, tolerance: f64) -> Result<StepEnd, StaticsError> {
+        self.state.configuration.orthonormalise();
+        self.start.copy_from(&self.state.configuration);
+        self.travel.fill(Vector6::zeros());
+        self.solver.begin();
+        let mass = 1.0 / (tau * tau);
+        let mut shortened = 0;
+        for iteration in 0..=STEP_ITERATIONS {
+            for k in 0..self.travel.len() {
+                self.state.acceleration[k] = self.travel[k] * mass;
+                self.weights[k] =
+                    so3::left_jacobian_inverse(&self.travel[k].fixed_rows::<3>(3).into_owned());
+            }
+            let weights = TangentWeights {
+                velocity: 0.0,
+                acceleration: mass,
+                rotation: Some(&self.weights),
+            };
+            self.solver
+                .assemble(0.0, &self.state, Some(&weights), &mut self.residual_vector);
+            self.residual = self.solver.residual_size(&self.residual_vector);
+            if !self.residual.newtons.is_finite() {
+                return Ok(StepEnd::Failed);
+            }
+            if self.residual.newtons <= tolerance {
+                return Ok(StepEnd::Converged {
+                    iterations: iteration,
+                });
+            }
+            if iteration == STEP_ITERATIONS
+                || self
+                    .solver
+                    .solve(&self.residual_vector, &mut self.increment)
+                    .is_err()
+            {
+                break;
+            }
+            self.iterations += 1;
+            let (largest_move_m, complete) = self.advance();
+            shortened += usize::from(!complete);
+            let progress = StaticsProgress {
+                iteration: self.iterations,
+                residual_n: self.residual.newtons,
+                largest_move_m,
+            };
+            if (self.progress)(&progress).is_break() {
+                return Err(StaticsError::Interrupted {
+                    iterations: self.iterations,
+                });
+            }
+        }
+        Ok(StepEnd::Failed)
+    }
+
+    /// Applies the increment, shortened where it turns too far; returns the largest move
+    /// and whether it was applied in full.
+    fn advance(&mut self) -> (f64, bool) {
+        let largest = |part: usize| {
+            self.increment
+                .iter()
+                .map(|d| d.fixed_rows::<3>(part).norm())
+                .fold(0.0, f64::max)
+        };
+        let turn = largest(3);
+        let shorten = if turn > ROTATION_LIMIT {
+            ROTATION_LIMIT / turn
+        } else {
+            1.0
+        };
+        let moved = largest(0) * shorten;
+        for increment in &mut self.increment {
+            *increment *= shorten;
+        }
+        self.solver.moving(&self.increment);
+        for k in 0..self.travel.len() {
+            let d = &self.increment[k];
+            let turn = self.weights[k] * d.fixed_rows::<3>(3);
+            for row in 0..3 {
+                self.travel[k][row] += d[row];
+                self.travel[k][row + 3] += turn[row];
+            }
+            let travel = &self.travel[k];
+            self.state.configuration.position[k] =
+                self.start.position[k] + travel.fixed_rows::<3>(0);
+            self.state.configuration.rotation[k] =
+                so3::exp(&travel.fixed_rows::<3>(3).into_owned()) * self.start.rotation[k];
+        }
+        (moved, shorten == 1.0)
+    }
+}

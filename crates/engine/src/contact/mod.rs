@@ -1,0 +1,3 @@
+//! Contact with the flat seabed.
+
+pub mod seabed;

@@ -1,0 +1,319 @@
+//! Residual and iteration matrix of the whole system.
+
+use catenix_numerics::{
+    Block6, BlockMatrix, Matrix3, MotionState, TangentWeights, Vector3, Vector6,
+};
+
+use super::frames::{self, FrameMotion, FrameWeights, Sea};
+use super::{Carrier, Connector, ConnectorLaw, Mount, Place, System};
+use crate::body::motion::RigidMotion;
+use crate::element::dem::connector::{ConnectorState, Stress};
+use crate::element::dem::joint::JointState;
+use crate::element::dem::pair::{PairForces, PairTangent, RateWeights, Sensitivity, Side};
+
+/// A connector of either kind at one configuration.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum PairState {
+    Beam(ConnectorState),
+    Joint(JointState),
+}
+
+/// A connector with its two sides, as last evaluated.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct EvaluatedPair {
+    pub first: Side,
+    pub second: Side,
+    pub state: PairState,
+}
+
+impl EvaluatedPair {
+    pub(super) fn new(
+        connector: &Connector,
+        state: &MotionState,
+        vessels: &[RigidMotion],
+    ) -> EvaluatedPair {
+        let first = side(&connector.first, state, vessels);
+        let second = side(&connector.second, state, vessels);
+        let state = match &connector.law {
+            ConnectorLaw::Beam(law) => PairState::Beam(ConnectorState::new(law, &first, &second)),
+            ConnectorLaw::Joint(law) => PairState::Joint(JointState::new(law, &first, &second)),
+        };
+        EvaluatedPair {
+            first,
+            second,
+            state,
+        }
+    }
+
+    pub(super) fn forces(&self) -> PairForces {
+        match &self.state {
+            PairState::Beam(state) => state.forces(&self.first, &self.second),
+            PairState::Joint(state) => state.forces(&self.first, &self.second),
+        }
+    }
+
+    pub(super) fn energy(&self) -> f64 {
+        match &self.state {
+            PairState::Beam(state) => state.energy(),
+            PairState::Joint(state) => state.energy(),
+        }
+    }
+
+    pub(super) fn damping_power(&self) -> f64 {
+        match &self.state {
+            PairState::Beam(state) => state.damping_power(),
+            PairState::Joint(state) => state.damping_power(),
+        }
+    }
+
+    /// Axes in which the mixed stress is kept between iterations.
+    fn stress_axes(&self) -> Matrix3 {
+        match &self.state {
+            PairState::Beam(state) => state.middle,
+            PairState::Joint(_) => self.second.rotation,
+        }
+    }
+
+    fn elastic(&self) -> Stress {
+        match &self.state {
+            PairState::Beam(state) => state.elastic,
+            PairState::Joint(state) => Stress {
+                force: state.elastic,
+                moment: Vector3::zeros(),
+            },
+        }
+    }
+
+    fn tangent(&self, law: &ConnectorLaw, stress: &Stress, rates: &RateWeights) -> PairTangent {
+        let (first, second) = (&self.first, &self.second);
+        match (&self.state, law) {
+            (PairState::Beam(state), ConnectorLaw::Beam(law)) => {
+                state.tangent(law, first, second, stress, rates)
+            }
+            (PairState::Joint(state), ConnectorLaw::Joint(law)) => {
+                state.tangent(law, first, second, stress, rates)
+            }
+            _ => unreachable!("a state is made by its own law"),
+        }
+    }
+
+    /// Stress predicted by a linear solution, in [`Self::stress_axes`].
+    pub(super) fn predicted_stress(&self, connector: &Connector, increment: &[Vector6]) -> Stress {
+        let split = |mount: &Mount| match mount.carrier {
+            Carrier::Free(k) => (
+                increment[k].fixed_rows::<3>(0).into_owned(),
+                increment[k].fixed_rows::<3>(3).into_owned(),
+            ),
+            Carrier::Vessel(_) => (Vector3::zeros(), Vector3::zeros()),
+        };
+        let (a, b) = (split(&connector.first), split(&connector.second));
+        let (a, b) = ((&a.0, &a.1), (&b.0, &b.1));
+        match (&self.state, &connector.law) {
+            (PairState::Beam(state), ConnectorLaw::Beam(law)) => {
+                state.predicted_stress(law, &self.first, &self.second, a, b)
+            }
+            (PairState::Joint(state), ConnectorLaw::Joint(law)) => {
+                state.predicted_stress(law, &self.first, &self.second, a, b)
+            }
+            _ => unreachable!("a state is made by its own law"),
+        }
+    }
+}
+
+fn side(mount: &Mount, state: &MotionState, vessels: &[RigidMotion]) -> Side {
+    let (position, rotation, velocity, spin) = match mount.carrier {
+        Carrier::Free(k) => (
+            state.configuration.position[k],
+            state.configuration.rotation[k],
+            state.velocity[k].fixed_rows::<3>(0).into_owned(),
+            state.velocity[k].fixed_rows::<3>(3).into_owned(),
+        ),
+        Carrier::Vessel(k) => {
+            let vessel = &vessels[k];
+            (
+                vessel.position,
+                vessel.rotation,
+                vessel.velocity,
+                vessel.spin,
+            )
+        }
+    };
+    let lever = rotation * mount.arm;
+    Side {
+        point: position + lever,
+        lever,
+        rotation: rotation * mount.axes,
+        velocity: velocity + spin.cross(&lever),
+        spin,
+    }
+}
+
+pub(super) fn frame_motion(state: &MotionState, k: usize) -> FrameMotion {
+    let (velocity, acceleration) = (&state.velocity[k], &state.acceleration[k]);
+    FrameMotion {
+        position: state.configuration.position[k],
+        rotation: state.configuration.rotation[k],
+        velocity: velocity.fixed_rows::<3>(0).into_owned(),
+        spin: velocity.fixed_rows::<3>(3).into_owned(),
+        acceleration: acceleration.fixed_rows::<3>(0).into_owned(),
+        angular_acceleration: acceleration.fixed_rows::<3>(3).into_owned(),
+    }
+}
+
+/// Stress to use in the geometric part of each connector's tangent.
+#[derive(Clone, Copy)]
+pub(super) enum GeometricStress<'a> {
+    /// The elastic stress: the exact tangent.
+    Elastic,
+    /// Predicted by the last linear solution, in the connectors' own axes.
+    Predicted(&'a [Stress]),
+}
+
+/// Evaluates everything at `state`: residual, connectors and, with `weights`, the matrix.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "one call site; a struct would only rename them"
+)]
+pub(super) fn assemble(
+    system: &System,
+    sea: &Sea<'_>,
+    vessels: &[RigidMotion],
+    state: &MotionState,
+    weights: Option<&TangentWeights<'_>>,
+    geometric: GeometricStress<'_>,
+    pairs: &mut [EvaluatedPair],
+    residual: &mut [Vector6],
+    matrix: &mut BlockMatrix,
+) {
+    residual.fill(Vector6::zeros());
+    if weights.is_some() {
+        matrix.clear();
+    }
+    let turn = |k: usize| {
+        weights
+            .and_then(|weights| weights.rotation)
+            .map_or(Matrix3::identity(), |list| list[k])
+    };
+    let frame_weights = |k: usize| {
+        weights.map(|weights| FrameWeights {
+            velocity: weights.velocity,
+            acceleration: weights.acceleration,
+            rotation: turn(k),
+        })
+    };
+    for (k, frame) in system.frames.iter().enumerate() {
+        let own = frame_weights(k);
+        let tangent = own.as_ref().map(|own| (&mut matrix.diagonal[k], own));
+        frames::add_frame(
+            frame,
+            &frame_motion(state, k),
+            sea,
+            &mut residual[k],
+            tangent,
+        );
+    }
+    for lump in &system.lumps {
+        let k = lump.frame;
+        let own = frame_weights(k);
+        let tangent = own.as_ref().map(|own| (&mut matrix.diagonal[k], own));
+        frames::add_lump(
+            lump,
+            &frame_motion(state, k),
+            sea,
+            &mut residual[k],
+            tangent,
+        );
+    }
+    for (index, connector) in system.connectors.iter().enumerate() {
+        let pair = EvaluatedPair::new(connector, state, vessels);
+        let forces = pair.forces();
+        for (mount, force) in [
+            (&connector.first, &forces.first),
+            (&connector.second, &forces.second),
+        ] {
+            if let Carrier::Free(k) = mount.carrier {
+                residual[k] += force;
+            }
+        }
+        if let Some(weights) = weights {
+            let stress = match geometric {
+                GeometricStress::Elastic => pair.elastic(),
+                GeometricStress::Predicted(list) => {
+                    let axes = pair.stress_axes();
+                    Stress {
+                        force: axes * list[index].force,
+                        moment: axes * list[index].moment,
+                    }
+                }
+            };
+            let side_turn = |mount: &Mount| match mount.carrier {
+                Carrier::Free(k) => turn(k),
+                Carrier::Vessel(_) => Matrix3::identity(),
+            };
+            let rates = RateWeights {
+                velocity: weights.velocity,
+                rotation: [side_turn(&connector.first), side_turn(&connector.second)],
+            };
+            let tangent = pair.tangent(&connector.law, &stress, &rates);
+            scatter(system, connector, &tangent, matrix);
+        }
+        pairs[index] = pair;
+    }
+}
+
+/// Adds the blocks of a connector where they belong.
+fn scatter(system: &System, connector: &Connector, t: &PairTangent, matrix: &mut BlockMatrix) {
+    // Blocks by frame of the force (row) and frame of the move (column).
+    let rows = |block: &mut Block6, row: usize, column: usize| {
+        let sign = if row == 0 { -1.0 } else { 1.0 };
+        let moment = if row == 0 {
+            &t.first_moment
+        } else {
+            &t.second_moment
+        };
+        let pick = |d: &Sensitivity| -> (Matrix3, Matrix3) {
+            if column == 0 {
+                (-d.translation, d.first_rotation)
+            } else {
+                (d.translation, d.second_rotation)
+            }
+        };
+        let (by_position, by_rotation) = pick(&t.force);
+        block.add_quadrant(0, 0, &(by_position * sign));
+        block.add_quadrant(0, 1, &(by_rotation * sign));
+        let (by_position, by_rotation) = pick(moment);
+        block.add_quadrant(1, 0, &by_position);
+        block.add_quadrant(1, 1, &by_rotation);
+    };
+    let carriers = [connector.first.carrier, connector.second.carrier];
+    for (side, carrier) in carriers.into_iter().enumerate() {
+        if let Carrier::Free(k) = carrier {
+            rows(&mut matrix.diagonal[k], side, side);
+        }
+    }
+    // The side that belongs to the line, when the other is a junction.
+    let line_side = |junction: usize| usize::from(carriers[0] == Carrier::Free(junction));
+    match connector.place {
+        Place::Grounded => {}
+        Place::Link(k) => {
+            rows(&mut matrix.upper[k], 0, 1);
+            rows(&mut matrix.lower[k], 1, 0);
+        }
+        Place::Head(chain) => {
+            if let Some(junction) = system.topology.chains()[chain].head {
+                let line = line_side(junction);
+                let [out, back] = &mut matrix.head[chain];
+                rows(out, line, 1 - line);
+                rows(back, 1 - line, line);
+            }
+        }
+        Place::Tail(chain) => {
+            if let Some(junction) = system.topology.chains()[chain].tail {
+                let line = line_side(junction);
+                let [out, back] = &mut matrix.tail[chain];
+                rows(out, line, 1 - line);
+                rows(back, 1 - line, line);
+            }
+        }
+    }
+}

@@ -1,0 +1,409 @@
+//! From the model to the assembled system.
+
+use catenix_model::{
+    Attachment, Body, EndConnection, Joint, Line, LineEnd, LineType, Model, SupportRef,
+};
+use catenix_numerics::{Chain, Configuration, Matrix3, Topology, Vector3, so3};
+
+use super::shape::{self, Supports};
+use super::{
+    Carrier, Connector, ConnectorLaw, Frame, FrameLump, LineLayout, Mount, Place, System,
+    SystemError,
+};
+use crate::body::lump::Lump;
+use crate::body::motion::PrescribedMotion;
+use crate::element::dem::joint::{DotLaw, DotSpring, JointStiffness};
+use crate::element::dem::stiffness::{ConnectorStiffness, HalfElement};
+use crate::hydro::current::CurrentField;
+use crate::hydro::morison::DragCoefficients;
+
+/// Share of an element's length within which a lump counts as sitting at the element's end; it is
+/// then shared by the two neighbours.
+const END_SHARE: f64 = 1e-6;
+
+pub(super) fn build(model: &Model) -> Result<System, SystemError> {
+    if model.lines.is_empty() && model.bodies.is_empty() {
+        return Err(SystemError::Empty);
+    }
+    let vessels: Vec<PrescribedMotion> = model.vessels.iter().map(PrescribedMotion::new).collect();
+    let mut frames = Vec::new();
+    let mut lumps = Vec::new();
+    let mut lines = Vec::new();
+    for line in &model.lines {
+        let layout = lay_out(line, frames.len());
+        for (k, &line_type) in layout.element_types.iter().enumerate() {
+            let length = layout.arc_length[k + 1] - layout.arc_length[k];
+            frames.push(element_frame(model, &model.line_types[line_type], length));
+        }
+        for attachment in &line.attachments {
+            place_attachment(model, attachment, &layout, &mut lumps);
+        }
+        lines.push(layout);
+    }
+    let element_count = frames.len();
+    frames.extend(model.bodies.iter().map(|body| body_frame(model, body)));
+
+    let supports = shape::place_supports(model, &vessels, element_count);
+    let shape = shape::first_shape(model, &lines, &supports);
+    let mut connectors = Vec::new();
+    let mut chains = Vec::new();
+    for (index, line) in model.lines.iter().enumerate() {
+        chains.push(chain(line, &lines[index], element_count));
+        connect(
+            model,
+            index,
+            &mut lines[index],
+            &shape,
+            &supports,
+            &mut connectors,
+        )?;
+    }
+    let reference_force = frames.iter().map(|frame| frame.mass).sum::<f64>() * 9.80665
+        + lumps
+            .iter()
+            .map(|lump| lump.buoyancy.max(lump.weight))
+            .sum::<f64>();
+    let reference_length = model.lines.iter().map(Line::length).fold(1.0, f64::max);
+    Ok(System {
+        topology: Topology::new(chains, frames.len()),
+        current: CurrentField::new(&model.environment.current),
+        model: model.clone(),
+        frames,
+        lumps,
+        connectors,
+        lines,
+        vessels,
+        first_shape: shape,
+        reference_force,
+        reference_length,
+    })
+}
+
+fn lay_out(line: &Line, first_frame: usize) -> LineLayout {
+    let mut arc_length = vec![0.0];
+    let mut element_types = Vec::new();
+    let mut end = 0.0;
+    for section in &line.sections {
+        for length in &section.element_lengths {
+            end += length;
+            arc_length.push(end);
+            element_types.push(section.line_type);
+        }
+    }
+    LineLayout {
+        first_frame,
+        element_count: element_types.len(),
+        nodes: vec![None; arc_length.len()],
+        arc_length,
+        element_types,
+    }
+}
+
+/// Properties of one element: everything per metre times its length.
+///
+/// Source: docs/theory/dem.md, eq. (22), and docs/theory/hydrodynamics.md, eqs. (2) to (7).
+fn element_frame(model: &Model, line_type: &LineType, length: f64) -> Frame {
+    let water = model.environment.water_density;
+    let area = 0.25 * std::f64::consts::PI * line_type.outer_diameter.powi(2);
+    let displaced = water * area * length;
+    let mass = line_type.mass * length;
+    let radius_squared = length * length / 12.0;
+    let added_normal = line_type.normal_added_mass * displaced;
+    let half_flow = 0.5 * water * line_type.outer_diameter * length;
+    // A line that is flexible in shear also has the rotary inertia of its section, half the
+    // polar one; Euler-Bernoulli has neither.
+    let section = match line_type.shear_stiffness {
+        Some(_) => 0.5 * line_type.polar_inertia * length,
+        None => 0.0,
+    };
+    let normal_inertia = mass * radius_squared + section;
+    Frame {
+        axis: Vector3::x(),
+        length,
+        diameter: line_type.outer_diameter,
+        mass,
+        inertia: Vector3::new(
+            line_type.polar_inertia * length,
+            normal_inertia,
+            normal_inertia,
+        ),
+        drag: DragCoefficients {
+            normal: line_type.normal_drag * half_flow,
+            axial: line_type.axial_drag * half_flow * std::f64::consts::PI,
+            radius_squared,
+        },
+        added_normal,
+        added_axial: line_type.axial_added_mass * displaced,
+        added_inertia: added_normal * radius_squared,
+        weight: mass * model.environment.gravity,
+        buoyancy: displaced * model.environment.gravity,
+        buoyancy_arm: Vector3::zeros(),
+        seabed_length: length,
+        residual_length: length,
+    }
+}
+
+fn body_frame(model: &Model, body: &Body) -> Frame {
+    let water = model.environment.water_density;
+    let radius_squared = body.length * body.length / 12.0;
+    let sphere = (6.0 * body.volume / std::f64::consts::PI).cbrt();
+    let gyration = (body.inertia.iter().fold(0.0f64, |a, &b| a.max(b)) / body.mass).sqrt();
+    Frame {
+        axis: Vector3::z(),
+        length: body.length,
+        diameter: if body.length > 0.0 {
+            (4.0 * body.volume / (std::f64::consts::PI * body.length)).sqrt()
+        } else {
+            sphere
+        },
+        mass: body.mass,
+        inertia: Vector3::from(body.inertia),
+        drag: DragCoefficients {
+            normal: 0.5 * water * body.normal_drag_area,
+            axial: 0.5 * water * body.axial_drag_area,
+            radius_squared,
+        },
+        added_normal: body.normal_added_mass,
+        added_axial: body.axial_added_mass,
+        added_inertia: body.normal_added_mass * radius_squared,
+        weight: body.mass * model.environment.gravity,
+        buoyancy: water * body.volume * model.environment.gravity,
+        buoyancy_arm: Vector3::from(body.centre_of_buoyancy),
+        seabed_length: body.length.max(sphere),
+        residual_length: body.length.max(gyration).max(1e-3),
+    }
+}
+
+/// Puts a lump on the element that holds its arc length, or half on each of two neighbours.
+fn place_attachment(
+    model: &Model,
+    attachment: &Attachment,
+    layout: &LineLayout,
+    lumps: &mut Vec<FrameLump>,
+) {
+    let environment = &model.environment;
+    let total = layout.arc_length[layout.element_count];
+    let at = attachment.arc_length.clamp(0.0, total);
+    let after = layout.arc_length.partition_point(|&s| s <= at);
+    let element = after.saturating_sub(1).min(layout.element_count - 1);
+    let (start, end) = (layout.arc_length[element], layout.arc_length[element + 1]);
+    let length = end - start;
+    let mut shares = vec![(element, at - 0.5 * (start + end), 1.0)];
+    if (at - start).abs() < END_SHARE * length && element > 0 {
+        let before = start - layout.arc_length[element - 1];
+        shares = vec![
+            (element - 1, 0.5 * before, 0.5),
+            (element, -0.5 * length, 0.5),
+        ];
+    } else if (end - at).abs() < END_SHARE * length && element + 1 < layout.element_count {
+        let next = layout.arc_length[element + 2] - end;
+        shares = vec![
+            (element, 0.5 * length, 0.5),
+            (element + 1, -0.5 * next, 0.5),
+        ];
+    }
+    for (element, offset, share) in shares {
+        let weight = share * attachment.mass * environment.gravity;
+        let volume = share * attachment.volume;
+        let buoyancy = volume * environment.water_density * environment.gravity;
+        lumps.push(FrameLump {
+            frame: layout.first_frame + element,
+            arm: Vector3::new(offset, 0.0, 0.0),
+            lump: Lump {
+                total_mass: share * (attachment.mass + attachment.added_mass),
+                drag: share * 0.5 * environment.water_density * attachment.drag_area,
+            },
+            weight,
+            buoyancy,
+            diameter: (6.0 * attachment.volume / std::f64::consts::PI).cbrt(),
+        });
+    }
+}
+
+fn chain(line: &Line, layout: &LineLayout, element_count: usize) -> Chain {
+    let junction = |end: &LineEnd| match end {
+        LineEnd::Connected(EndConnection {
+            to: SupportRef::Body(body),
+            ..
+        }) => Some(element_count + body),
+        _ => None,
+    };
+    Chain {
+        first: layout.first_frame,
+        len: layout.element_count,
+        head: junction(&line.ends[0]),
+        tail: junction(&line.ends[1]),
+    }
+}
+
+/// Adds the connectors of a line, end A to end B.
+fn connect(
+    model: &Model,
+    index: usize,
+    layout: &mut LineLayout,
+    shape: &Configuration,
+    supports: &Supports,
+    connectors: &mut Vec<Connector>,
+) -> Result<(), SystemError> {
+    let line = &model.lines[index];
+    let half = |layout: &LineLayout, element: usize| HalfElement {
+        line_type: &model.line_types[layout.element_types[element]],
+        length: layout.arc_length[element + 1] - layout.arc_length[element],
+    };
+    let mount = |layout: &LineLayout, element: usize, at_b: bool| Mount {
+        carrier: Carrier::Free(layout.first_frame + element),
+        arm: Vector3::x() * half(layout, element).length * if at_b { 0.5 } else { -0.5 },
+        axes: Matrix3::identity(),
+    };
+    for node in 0..=layout.element_count {
+        let end = if node == 0 {
+            Some(0)
+        } else if node == layout.element_count {
+            Some(1)
+        } else {
+            None
+        };
+        let connector = match end {
+            None => Connector {
+                law: ConnectorLaw::Beam(ConnectorStiffness::between(
+                    half(layout, node - 1),
+                    half(layout, node),
+                )),
+                first: mount(layout, node - 1, true),
+                second: mount(layout, node, false),
+                place: Place::Link(layout.first_frame + node - 1),
+            },
+            Some(end) => {
+                let LineEnd::Connected(connection) = &line.ends[end] else {
+                    continue;
+                };
+                let element = if end == 0 {
+                    0
+                } else {
+                    layout.element_count - 1
+                };
+                let rotation = shape.rotation[layout.first_frame + element];
+                end_connector(
+                    index,
+                    end,
+                    connection,
+                    half(layout, element),
+                    mount(layout, element, end == 1),
+                    &rotation,
+                    supports,
+                )
+            }
+        };
+        let stiffness = match &connector.law {
+            ConnectorLaw::Beam(stiffness) => stiffness,
+            ConnectorLaw::Joint(joint) => &joint.half,
+        };
+        if !(stiffness.axial.is_finite() && stiffness.axial > 0.0 && stiffness.shear.is_finite()) {
+            return Err(SystemError::Unusable {
+                owner: format!("line '{}'", line.name),
+                what: format!(
+                    "the axial stiffness at {:.3} m is not a positive number; give its line type \
+                     a positive axial stiffness",
+                    layout.arc_length[node]
+                ),
+            });
+        }
+        layout.nodes[node] = Some(connectors.len());
+        connectors.push(connector);
+    }
+    Ok(())
+}
+
+/// The connection of a line's end to a vessel or body.
+fn end_connector(
+    line: usize,
+    end: usize,
+    connection: &EndConnection,
+    half: HalfElement<'_>,
+    element: Mount,
+    element_rotation: &Matrix3,
+    supports: &Supports,
+) -> Connector {
+    let support = supports.get(connection.to);
+    let point = Vector3::from(connection.point_local);
+    let direction = Vector3::from(connection.direction_local);
+    let tangent: Vector3 = element_rotation.column(0).into();
+    let stiffness = ConnectorStiffness::clamp(half, end == 0);
+    let place = match (connection.to, end) {
+        (SupportRef::Vessel(_), _) => Place::Grounded,
+        (SupportRef::Body(_), 0) => Place::Head(line),
+        (SupportRef::Body(_), _) => Place::Tail(line),
+    };
+    let on_support = |axes: Matrix3| Mount {
+        carrier: support.carrier,
+        arm: point,
+        axes,
+    };
+    // The element's axes turned the shortest way into the connection's direction: a line that is
+    // laid in its first shape is not twisted.
+    let untwisted = so3::shortest_arc(&tangent, &(support.rotation * direction)) * element_rotation;
+    if connection.joint == Joint::Fixed {
+        let clamp = on_support(support.rotation.transpose() * untwisted);
+        let (first, second) = if end == 0 {
+            (clamp, element)
+        } else {
+            (element, clamp)
+        };
+        return Connector {
+            law: ConnectorLaw::Beam(stiffness),
+            first,
+            second,
+            place,
+        };
+    }
+    let torsion = 2.0 * half.line_type.torsional_stiffness / half.length;
+    let bending = 2.0 * half.line_type.bending_stiffness / half.length;
+    let spring = |support_axis: Vector3, element_axis: Vector3, law| DotSpring {
+        support_axis,
+        element_axis,
+        law,
+    };
+    // The cross's second axis, in the element: normal to the line and to the support's axis.
+    let second_axis = |axis: Vector3| {
+        let normal = tangent.cross(&(support.rotation * axis));
+        let normal = if normal.norm() > 1e-6 {
+            normal.normalize()
+        } else {
+            so3::any_normal(&tangent)
+        };
+        element_rotation.transpose() * normal
+    };
+    let springs = match connection.joint {
+        Joint::Ball {
+            rotational_stiffness,
+        } if rotational_stiffness > 0.0 => {
+            let series = 1.0 / (1.0 / rotational_stiffness + 1.0 / bending);
+            vec![spring(direction, Vector3::x(), DotLaw::Parallel(series))]
+        }
+        Joint::Ball { .. } | Joint::Fixed => Vec::new(),
+        Joint::Universal { axis_local } => {
+            let axis = Vector3::from(axis_local);
+            vec![spring(
+                axis,
+                second_axis(axis),
+                DotLaw::Perpendicular(torsion),
+            )]
+        }
+        Joint::Hinge { axis_local } => {
+            let axis = Vector3::from(axis_local);
+            vec![
+                spring(axis, second_axis(axis), DotLaw::Perpendicular(torsion)),
+                spring(axis, Vector3::x(), DotLaw::Perpendicular(bending)),
+            ]
+        }
+    };
+    Connector {
+        law: ConnectorLaw::Joint(JointStiffness {
+            half: stiffness,
+            springs,
+        }),
+        first: on_support(Matrix3::identity()),
+        second: element,
+        place,
+    }
+}

@@ -1,0 +1,352 @@
+//! Loads and inertia of one frame: the place where hydrodynamics, gravity, contact and inertia
+//! meet.
+
+use catenix_model::Seabed;
+use catenix_numerics::{Block6, Matrix3, Vector3, Vector6, so3::hat};
+
+use super::{Frame, FrameLump};
+use crate::body::inertia::{Tensors, inertia_force, inertia_tangent};
+use crate::body::lump::LumpMotion;
+use crate::contact::seabed;
+use crate::element::dem::pair::six;
+use crate::hydro::current::CurrentField;
+use crate::hydro::morison::{self, DragMotion};
+use crate::hydro::submergence::Submergence;
+
+/// The sea at one time.
+#[derive(Clone, Copy)]
+pub(super) struct Sea<'a> {
+    pub current: &'a CurrentField,
+    pub current_factor: f64,
+    pub seabed: Option<&'a Seabed>,
+    pub depth: f64,
+}
+
+/// Motion of one frame, global.
+#[derive(Clone, Copy)]
+pub(super) struct FrameMotion {
+    pub position: Vector3,
+    pub rotation: Matrix3,
+    pub velocity: Vector3,
+    pub spin: Vector3,
+    pub acceleration: Vector3,
+    pub angular_acceleration: Vector3,
+}
+
+/// How velocity and acceleration follow an increment of this frame.
+#[derive(Clone, Copy)]
+pub(super) struct FrameWeights {
+    pub velocity: f64,
+    pub acceleration: f64,
+    pub rotation: Matrix3,
+}
+
+/// Powers of the loads on a frame or lump [W].
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct LoadPowers {
+    pub drag: f64,
+    pub added_mass: f64,
+    pub buoyancy: f64,
+    pub seabed_damping: f64,
+}
+
+/// Derivative of a function of the frame's increment, collected into a 6 x 6 block.
+struct Collector<'a> {
+    block: &'a mut Block6,
+    weights: FrameWeights,
+}
+
+impl Collector<'_> {
+    fn position(&mut self, row: usize, m: &Matrix3) {
+        self.block.add_quadrant(row, 0, m);
+    }
+
+    fn rotation(&mut self, row: usize, m: &Matrix3) {
+        self.block.add_quadrant(row, 1, m);
+    }
+
+    fn velocity(&mut self, row: usize, m: &Matrix3) {
+        self.block
+            .add_quadrant(row, 0, &(m * self.weights.velocity));
+    }
+
+    fn spin(&mut self, row: usize, m: &Matrix3) {
+        self.block
+            .add_quadrant(row, 1, &(m * self.weights.rotation * self.weights.velocity));
+    }
+
+    fn acceleration(&mut self, row: usize, m: &Matrix3) {
+        self.block
+            .add_quadrant(row, 0, &(m * self.weights.acceleration));
+    }
+
+    fn angular(&mut self, row: usize, m: &Matrix3) {
+        self.block.add_quadrant(
+            row,
+            1,
+            &(m * self.weights.rotation * self.weights.acceleration),
+        );
+    }
+}
+
+/// What frame loads need of a frame's place: axis, submergence, water velocity.
+struct Place {
+    axis: Vector3,
+    wet: Submergence,
+    relative_velocity: Vector3,
+    current_slope: Vector3,
+}
+
+impl Place {
+    #[inline]
+    fn new(frame: &Frame, m: &FrameMotion, sea: &Sea<'_>) -> Place {
+        let axis = m.rotation * frame.axis;
+        let wet = Submergence::new(m.position.z, axis.z, frame.length, frame.diameter);
+        let (water, current_slope) = sea.current.at(m.position.z, sea.current_factor);
+        Place {
+            axis,
+            wet,
+            relative_velocity: water - m.velocity,
+            current_slope,
+        }
+    }
+
+    fn tensors(&self, frame: &Frame, rotation: &Matrix3) -> Tensors {
+        let share = self.wet.share;
+        let structure = rotation * Matrix3::from_diagonal(&frame.inertia) * rotation.transpose();
+        let added = morison::added_mass(&self.axis, frame.added_normal, frame.added_axial);
+        Tensors {
+            mass: Matrix3::identity() * frame.mass + added * share,
+            inertia: structure + morison::added_mass(&self.axis, frame.added_inertia, 0.0) * share,
+        }
+    }
+}
+
+/// Adds inertia minus loads of a frame to its residual and, with `weights`, their derivatives to
+/// its diagonal block.
+pub(super) fn add_frame(
+    frame: &Frame,
+    m: &FrameMotion,
+    sea: &Sea<'_>,
+    residual: &mut Vector6,
+    tangent: Option<(&mut Block6, &FrameWeights)>,
+) {
+    let place = Place::new(frame, m, sea);
+    let share = place.wet.share;
+    let drag_motion = DragMotion {
+        axis: place.axis,
+        relative_velocity: place.relative_velocity,
+        spin: m.spin,
+    };
+    let drag = morison::drag(&frame.drag, &drag_motion);
+    let tensors = place.tensors(frame, &m.rotation);
+    let (inertia, inertia_moment) =
+        inertia_force(&tensors, &m.spin, &m.acceleration, &m.angular_acceleration);
+    let lift = Vector3::z() * (frame.buoyancy * share - frame.weight);
+    let arm = m.rotation * frame.buoyancy_arm;
+    let buoyancy = Vector3::z() * (frame.buoyancy * share);
+    let contact = sea
+        .seabed
+        .filter(|_| frame.seabed_length > 0.0)
+        .and_then(|seabed| touch(seabed, frame, m, sea.depth));
+    let mut force = inertia - drag.force * share - lift;
+    if let Some(contact) = &contact {
+        force -= contact.force;
+    }
+    let moment = inertia_moment - drag.moment * share - arm.cross(&buoyancy);
+    *residual += six(&force, &moment);
+
+    let Some((block, weights)) = tangent else {
+        return;
+    };
+    let mut add = Collector {
+        block,
+        weights: *weights,
+    };
+    let t = morison::drag_tangent(&frame.drag, &drag_motion);
+    let by_height = place.current_slope * Vector3::z().transpose();
+    add.position(0, &(t.force_velocity * by_height * -share));
+    add.position(1, &(t.moment_velocity * by_height * -share));
+    add.rotation(
+        0,
+        &(morison::by_rotation(&t.force_axis, &place.axis) * -share),
+    );
+    add.rotation(
+        1,
+        &(morison::by_rotation(&t.moment_axis, &place.axis) * -share),
+    );
+    add.velocity(0, &(t.force_velocity * share));
+    add.velocity(1, &(t.moment_velocity * share));
+    add.spin(0, &(t.force_spin * -share));
+    add.spin(1, &(t.moment_spin * -share));
+
+    let i = inertia_tangent(&tensors, &m.spin, &m.acceleration, &m.angular_acceleration);
+    add.rotation(0, &i.force_rotation);
+    add.rotation(1, &i.moment_rotation);
+    add.spin(1, &i.moment_spin);
+    add.acceleration(0, &tensors.mass);
+    add.angular(1, &tensors.inertia);
+
+    if frame.buoyancy_arm != Vector3::zeros() {
+        add.rotation(1, &-(hat(&buoyancy) * hat(&arm)));
+    }
+    if place.wet.by_height != 0.0 {
+        add_waterline(frame, m, &place, &drag, &arm, &mut add);
+    }
+    if let Some(contact) = &contact {
+        add.position(0, &-(contact.by_height * Vector3::z().transpose()));
+        add.velocity(0, &-contact.by_velocity);
+    }
+}
+
+fn touch(seabed: &Seabed, frame: &Frame, m: &FrameMotion, depth: f64) -> Option<seabed::Contact> {
+    seabed::contact(
+        seabed,
+        frame.seabed_length,
+        m.position.z + depth,
+        &m.velocity,
+    )
+}
+
+/// Derivatives through the share of the frame that is under water.
+fn add_waterline(
+    frame: &Frame,
+    m: &FrameMotion,
+    place: &Place,
+    drag: &morison::Drag,
+    arm: &Vector3,
+    add: &mut Collector<'_>,
+) {
+    let added = morison::added_mass(&place.axis, frame.added_normal, frame.added_axial);
+    let added_inertia = morison::added_mass(&place.axis, frame.added_inertia, 0.0);
+    let up = Vector3::z() * frame.buoyancy;
+    let force = added * m.acceleration - drag.force - up;
+    let moment = added_inertia * m.angular_acceleration + m.spin.cross(&(added_inertia * m.spin))
+        - drag.moment
+        - arm.cross(&up);
+    let by_height = Vector3::z().transpose() * place.wet.by_height;
+    let by_rotation = Vector3::z().transpose() * -hat(&place.axis) * place.wet.by_slope;
+    add.position(0, &(force * by_height));
+    add.position(1, &(moment * by_height));
+    add.rotation(0, &(force * by_rotation));
+    add.rotation(1, &(moment * by_rotation));
+}
+
+fn lump_motion(lump: &FrameLump, m: &FrameMotion, sea: &Sea<'_>) -> (LumpMotion, Vector3) {
+    let arm = m.rotation * lump.arm;
+    let (water, slope) = sea.current.at(m.position.z + arm.z, sea.current_factor);
+    let motion = LumpMotion {
+        arm,
+        relative_velocity: water - m.velocity,
+        spin: m.spin,
+        acceleration: m.acceleration,
+        angular_acceleration: m.angular_acceleration,
+    };
+    (motion, slope)
+}
+
+/// Adds inertia minus loads of a lump to its frame's residual and diagonal block.
+pub(super) fn add_lump(
+    lump: &FrameLump,
+    m: &FrameMotion,
+    sea: &Sea<'_>,
+    residual: &mut Vector6,
+    tangent: Option<(&mut Block6, &FrameWeights)>,
+) {
+    let (motion, slope) = lump_motion(lump, m, sea);
+    let arm = motion.arm;
+    let wet = Submergence::new(m.position.z + arm.z, 0.0, 0.0, lump.diameter);
+    let lift = Vector3::z() * (lump.buoyancy * wet.share - lump.weight);
+    let force = lump.lump.force(&motion).total() + lift;
+    *residual -= six(&force, &arm.cross(&force));
+
+    let Some((block, weights)) = tangent else {
+        return;
+    };
+    let mut add = Collector {
+        block,
+        weights: *weights,
+    };
+    let t = lump.lump.tangent(&motion);
+    let arm_hat = hat(&arm);
+    let by_height = (t.water * slope + Vector3::z() * (lump.buoyancy * wet.by_height))
+        * Vector3::z().transpose();
+    let by_rotation = t.rotation - by_height * arm_hat;
+    add.position(0, &-by_height);
+    add.position(1, &-(arm_hat * by_height));
+    add.rotation(0, &-by_rotation);
+    add.rotation(1, &(hat(&force) * -arm_hat - arm_hat * by_rotation));
+    add.velocity(0, &-t.velocity);
+    add.velocity(1, &-(arm_hat * t.velocity));
+    add.spin(0, &-t.spin);
+    add.spin(1, &-(arm_hat * t.spin));
+    add.acceleration(0, &-t.acceleration);
+    add.acceleration(1, &-(arm_hat * t.acceleration));
+    add.angular(0, &-t.angular_acceleration);
+    add.angular(1, &-(arm_hat * t.angular_acceleration));
+}
+
+/// Kinetic, gravity and contact energy of a frame and the powers of its loads.
+pub(super) fn frame_energy(
+    frame: &Frame,
+    m: &FrameMotion,
+    sea: &Sea<'_>,
+) -> (f64, f64, LoadPowers) {
+    let place = Place::new(frame, m, sea);
+    let share = place.wet.share;
+    let drag_motion = DragMotion {
+        axis: place.axis,
+        relative_velocity: place.relative_velocity,
+        spin: m.spin,
+    };
+    let drag = morison::drag(&frame.drag, &drag_motion);
+    let structure = m.rotation * Matrix3::from_diagonal(&frame.inertia) * m.rotation.transpose();
+    let kinetic =
+        0.5 * frame.mass * m.velocity.norm_squared() + 0.5 * m.spin.dot(&(structure * m.spin));
+    let added = morison::added_mass(&place.axis, frame.added_normal, frame.added_axial) * share;
+    let added_inertia = morison::added_mass(&place.axis, frame.added_inertia, 0.0) * share;
+    let up = Vector3::z() * (frame.buoyancy * share);
+    let arm = m.rotation * frame.buoyancy_arm;
+    let mut potential = frame.weight * m.position.z;
+    let mut powers = LoadPowers {
+        drag: share * (drag.force.dot(&m.velocity) + drag.moment.dot(&m.spin)),
+        added_mass: -m.velocity.dot(&(added * m.acceleration))
+            - m.spin.dot(&(added_inertia * m.angular_acceleration)),
+        buoyancy: up.dot(&(m.velocity + m.spin.cross(&arm))),
+        seabed_damping: 0.0,
+    };
+    if let Some(seabed) = sea.seabed.filter(|_| frame.seabed_length > 0.0) {
+        if let Some(contact) = touch(seabed, frame, m, sea.depth) {
+            let still = FrameMotion {
+                velocity: Vector3::zeros(),
+                ..*m
+            };
+            let spring = touch(seabed, frame, &still, sea.depth);
+            let spring = spring.map_or_else(Vector3::zeros, |contact| contact.force);
+            potential += contact.energy;
+            powers.seabed_damping = (contact.force - spring).dot(&m.velocity);
+        }
+    }
+    (kinetic, potential, powers)
+}
+
+/// The same for a lump; its own mass is structure, its added mass is not told apart and counts as
+/// structure too.
+pub(super) fn lump_energy(
+    lump: &FrameLump,
+    m: &FrameMotion,
+    sea: &Sea<'_>,
+) -> (f64, f64, LoadPowers) {
+    let (motion, _) = lump_motion(lump, m, sea);
+    let velocity = m.velocity + m.spin.cross(&motion.arm);
+    let height = m.position.z + motion.arm.z;
+    let wet = Submergence::new(height, 0.0, 0.0, lump.diameter);
+    let force = lump.lump.force(&motion);
+    let powers = LoadPowers {
+        drag: force.drag.dot(&velocity),
+        buoyancy: lump.buoyancy * wet.share * velocity.z,
+        ..LoadPowers::default()
+    };
+    let kinetic = 0.5 * lump.lump.total_mass * velocity.norm_squared();
+    (kinetic, lump.weight * height, powers)
+}

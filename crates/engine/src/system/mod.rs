@@ -1,0 +1,312 @@
+//! The assembled system: flat arrays of frames and connectors, built once from a [`Model`] and
+//! never changed; everything that changes lives in the state and in a [`Workspace`].
+//!
+//! Frames are numbered line by line, element by element from end A to end B, then the bodies.
+
+mod assembly;
+mod build;
+mod energy;
+mod frames;
+mod shape;
+mod solver;
+mod view;
+
+use catenix_model::{ChannelTarget, LineType, Model};
+use catenix_numerics::{Configuration, Matrix3, Topology, Vector3};
+use thiserror::Error;
+
+use crate::body::lump::Lump;
+use crate::body::motion::{PrescribedMotion, RigidMotion};
+use crate::element::dem::connector::Stress;
+use crate::element::dem::joint::JointStiffness;
+use crate::element::dem::stiffness::ConnectorStiffness;
+use crate::hydro::current::CurrentField;
+use crate::hydro::morison::DragCoefficients;
+
+pub use energy::EnergyTerms;
+pub use solver::SystemSolver;
+pub use view::StepView;
+
+/// Why a model cannot be assembled.
+#[derive(Debug, Clone, Error, PartialEq)]
+#[non_exhaustive]
+pub enum SystemError {
+    /// Nothing to compute.
+    #[error("the model has no line and no body: there is nothing to compute")]
+    Empty,
+    /// A value that the solver cannot work with.
+    #[error("{owner}: {what}")]
+    Unusable {
+        /// Line, body or vessel.
+        owner: String,
+        /// What is wrong and what to change.
+        what: String,
+    },
+}
+
+/// The assembled, immutable system.
+#[derive(Debug, Clone)]
+pub struct System {
+    pub(crate) model: Model,
+    pub(crate) frames: Vec<Frame>,
+    pub(crate) lumps: Vec<FrameLump>,
+    pub(crate) connectors: Vec<Connector>,
+    pub(crate) lines: Vec<LineLayout>,
+    pub(crate) vessels: Vec<PrescribedMotion>,
+    pub(crate) current: CurrentField,
+    pub(crate) topology: Topology,
+    pub(crate) first_shape: Configuration,
+    pub(crate) reference_force: f64,
+    pub(crate) reference_length: f64,
+}
+
+/// Constant properties of a rigid frame: an element of a line, or a body.
+#[derive(Debug, Clone)]
+pub(crate) struct Frame {
+    /// Axis of the frame in its own axes, unit: along the line, or the body's z.
+    pub axis: Vector3,
+    /// Length along the axis [m].
+    pub length: f64,
+    /// Diameter, for the passage through the surface [m].
+    pub diameter: f64,
+    /// Mass of the structure [kg].
+    pub mass: f64,
+    /// Moments of inertia of the structure about its own axes [kg m2].
+    pub inertia: Vector3,
+    /// Drag, fully under water.
+    pub drag: DragCoefficients,
+    /// Added mass across the axis, fully under water [kg].
+    pub added_normal: f64,
+    /// Added mass along the axis [kg].
+    pub added_axial: f64,
+    /// Added moment of inertia about the normal axes [kg m2].
+    pub added_inertia: f64,
+    /// Weight in air [N].
+    pub weight: f64,
+    /// Buoyancy, fully under water [N].
+    pub buoyancy: f64,
+    /// From the origin to the centre of buoyancy, own axes [m].
+    pub buoyancy_arm: Vector3,
+    /// Length that rests on the seabed [m]; 0 for none.
+    pub seabed_length: f64,
+    /// Length that turns a residual moment into a force [m].
+    pub residual_length: f64,
+}
+
+/// A lump on a frame.
+#[derive(Debug, Clone)]
+pub(crate) struct FrameLump {
+    pub frame: usize,
+    /// From the frame's origin, own axes [m].
+    pub arm: Vector3,
+    pub lump: Lump,
+    /// Weight in air [N].
+    pub weight: f64,
+    /// Buoyancy under water [N].
+    pub buoyancy: f64,
+    /// Diameter of a sphere of its volume [m].
+    pub diameter: f64,
+}
+
+/// What a connector's side is fixed to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Carrier {
+    /// A frame of the state.
+    Free(usize),
+    /// A prescribed body.
+    Vessel(usize),
+}
+
+/// A connection point on a carrier.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Mount {
+    pub carrier: Carrier,
+    /// From the carrier's origin, its own axes [m].
+    pub arm: Vector3,
+    /// Connection axes in the carrier's axes.
+    pub axes: Matrix3,
+}
+
+/// Where the blocks of a connector go in the matrix.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// Between chain frames k and k + 1.
+    Link(usize),
+    /// Between a chain's first frame and its head junction.
+    Head(usize),
+    /// Between a chain's last frame and its tail junction.
+    Tail(usize),
+    /// One side is prescribed.
+    Grounded,
+}
+
+/// A connector of any kind.
+#[derive(Debug, Clone)]
+pub(crate) struct Connector {
+    pub law: ConnectorLaw,
+    pub first: Mount,
+    pub second: Mount,
+    pub place: Place,
+}
+
+#[derive(Debug, Clone)]
+pub(crate) enum ConnectorLaw {
+    /// Six components; first is towards end A.
+    Beam(ConnectorStiffness),
+    /// First is the support, second the element.
+    Joint(JointStiffness),
+}
+
+/// Where a line's parts are.
+#[derive(Debug, Clone)]
+pub(crate) struct LineLayout {
+    pub first_frame: usize,
+    pub element_count: usize,
+    /// Connector at each node, end A to end B; `None` at a free end (n_elements + 1).
+    pub nodes: Vec<Option<usize>>,
+    /// Unstretched distance of each node from end A (n_elements + 1) [m].
+    pub arc_length: Vec<f64>,
+    /// Line type of each element (n_elements).
+    pub element_types: Vec<usize>,
+}
+
+/// Which line or body a frame belongs to, for messages.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FrameOwner {
+    /// Element of a line: name, number from end A (1 is the first), distance of its centre [m].
+    Element {
+        /// Line name.
+        line: String,
+        /// Number from end A, starting at 1.
+        number: usize,
+        /// Unstretched distance of the element's centre from end A [m].
+        arc_length_m: f64,
+    },
+    /// A body.
+    Body(String),
+}
+
+impl std::fmt::Display for FrameOwner {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            FrameOwner::Element {
+                line,
+                number,
+                arc_length_m,
+            } => {
+                write!(
+                    f,
+                    "element {number} of line '{line}' ({arc_length_m:.1} m from end A)"
+                )
+            }
+            FrameOwner::Body(name) => write!(f, "body '{name}'"),
+        }
+    }
+}
+
+impl System {
+    /// Assembles a model.
+    ///
+    /// # Errors
+    /// [`SystemError`] when there is nothing to compute or a value cannot be used.
+    pub fn new(model: &Model) -> Result<System, SystemError> {
+        build::build(model)
+    }
+
+    /// The model it was made of.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Number of frames: elements and bodies.
+    pub fn frame_count(&self) -> usize {
+        self.frames.len()
+    }
+
+    /// Force that tolerances are relative to: weight of everything in air [N].
+    pub fn reference_force(&self) -> f64 {
+        self.reference_force
+    }
+
+    /// Length that step accuracy is relative to: the longest line [m].
+    pub fn reference_length(&self) -> f64 {
+        self.reference_length
+    }
+
+    /// The first guess of the shape, before statics.
+    pub fn first_shape(&self) -> &Configuration {
+        &self.first_shape
+    }
+
+    /// Unstretched distances of a line's nodes from end A (n_elements + 1) [m].
+    pub fn arc_length(&self, line: usize) -> &[f64] {
+        &self.lines[line].arc_length
+    }
+
+    /// Which line or body a frame belongs to.
+    pub fn owner(&self, frame: usize) -> FrameOwner {
+        for (layout, line) in self.lines.iter().zip(&self.model.lines) {
+            if (layout.first_frame..layout.first_frame + layout.element_count).contains(&frame) {
+                let k = frame - layout.first_frame;
+                return FrameOwner::Element {
+                    line: line.name.clone(),
+                    number: k + 1,
+                    arc_length_m: 0.5 * (layout.arc_length[k] + layout.arc_length[k + 1]),
+                };
+            }
+        }
+        FrameOwner::Body(self.model.bodies[frame - self.body_frame(0)].name.clone())
+    }
+
+    /// Whether a frame weighs nothing in water, lumps included.
+    pub(crate) fn is_weightless(&self, frame: usize) -> bool {
+        let own = &self.frames[frame];
+        let lumps = self.lumps.iter().filter(|lump| lump.frame == frame);
+        let net =
+            own.weight - own.buoyancy + lumps.map(|lump| lump.weight - lump.buoyancy).sum::<f64>();
+        net.abs() <= 1e-6 * own.weight
+    }
+
+    /// Frame of a body.
+    pub(crate) fn body_frame(&self, body: usize) -> usize {
+        self.frames.len() - self.model.bodies.len() + body
+    }
+
+    pub(crate) fn element_type(&self, line: usize, element: usize) -> &LineType {
+        &self.model.line_types[self.lines[line].element_types[element]]
+    }
+
+    /// Times at which loads jump: a step should end there.
+    pub(crate) fn event_times(&self) -> impl Iterator<Item = f64> + '_ {
+        self.current.event_times()
+    }
+
+    /// Motions of all vessels at a time.
+    pub(crate) fn vessel_motions(&self, time: f64) -> Vec<RigidMotion> {
+        self.vessels.iter().map(|vessel| vessel.at(time)).collect()
+    }
+
+    /// Whether a channel can be read from this system.
+    pub fn has_channel(&self, target: ChannelTarget) -> bool {
+        let (lines, bodies) = (self.lines.len(), self.model.bodies.len());
+        match target {
+            ChannelTarget::BodyPosition(k, _) | ChannelTarget::BodyTilt(k) => k < bodies,
+            ChannelTarget::BodyOffset(k, _) => {
+                k < bodies && self.model.bodies[k].offset_vessel.is_some()
+            }
+            ChannelTarget::VesselPosition(k, _) => k < self.vessels.len(),
+            ChannelTarget::EndForce(k, end, _) | ChannelTarget::EndMoment(k, end, _) => {
+                k < lines && end < 2
+            }
+            ChannelTarget::EndTension(k, end) | ChannelTarget::EndDeclination(k, end) => {
+                k < lines && end < 2
+            }
+            ChannelTarget::LinePoint(k, _, node) => {
+                k < lines && node < self.lines[k].arc_length.len()
+            }
+        }
+    }
+}
+
+/// Stress that the mixed Newton method predicts for a connector, in its own axes.
+pub(crate) type PredictedStress = Stress;

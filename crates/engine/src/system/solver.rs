@@ -1,0 +1,175 @@
+//! The system as the numerics see it: residual, matrix, increment.
+
+use catenix_numerics::{
+    BlockMatrix, Factorisation, ImplicitSystem, Matrix3, MotionState, ResidualSize, TangentWeights,
+    Vector3, Vector6,
+};
+
+use super::assembly::{self, EvaluatedPair, GeometricStress};
+use super::frames::Sea;
+use super::{PredictedStress, System};
+use crate::body::motion::RigidMotion;
+
+/// A system with the room that solving needs.
+#[derive(Debug, Clone)]
+pub struct SystemSolver<'a> {
+    pub(super) system: &'a System,
+    /// Whether the current acts.
+    current_acts: bool,
+    pub(super) vessels: Vec<RigidMotion>,
+    pub(super) pairs: Vec<EvaluatedPair>,
+    predicted: Vec<PredictedStress>,
+    has_prediction: bool,
+    matrix: BlockMatrix,
+    factors: Factorisation,
+    factorisations: usize,
+}
+
+impl<'a> SystemSolver<'a> {
+    /// Room for `system`; without `current_acts` the water stands still.
+    pub fn new(system: &'a System, current_acts: bool) -> SystemSolver<'a> {
+        let state = MotionState::at_rest(system.first_shape.clone());
+        let vessels = system.vessel_motions(0.0);
+        let pairs = system
+            .connectors
+            .iter()
+            .map(|connector| EvaluatedPair::new(connector, &state, &vessels))
+            .collect();
+        SystemSolver {
+            system,
+            current_acts,
+            vessels,
+            pairs,
+            predicted: vec![PredictedStress::default(); system.connectors.len()],
+            has_prediction: false,
+            matrix: BlockMatrix::zeros(&system.topology),
+            factors: Factorisation::new(&system.topology),
+            factorisations: 0,
+        }
+    }
+
+    /// The system.
+    pub fn system(&self) -> &'a System {
+        self.system
+    }
+
+    /// Factorisations done so far.
+    pub fn factorisations(&self) -> usize {
+        self.factorisations
+    }
+
+    /// Adds a touch of stiffness, `frequency_squared` times the inertia, against the spin of
+    /// elements about their axes and the turning of bodies.
+    pub(crate) fn hold_spins(&mut self, state: &MotionState, frequency_squared: f64) {
+        let first_body = self.system.body_frame(0);
+        for (k, frame) in self.system.frames.iter().enumerate() {
+            let rotation = &state.configuration.rotation[k];
+            let held = if k < first_body {
+                Vector3::new(frame.inertia.x, 0.0, 0.0)
+            } else {
+                frame.inertia + Vector3::repeat(frame.added_inertia)
+            };
+            let stiffness = rotation
+                * Matrix3::from_diagonal(&(held * frequency_squared))
+                * rotation.transpose();
+            self.matrix.diagonal[k].add_quadrant(1, 1, &stiffness);
+        }
+    }
+
+    pub(super) fn sea(&self, time: f64) -> Sea<'a> {
+        let environment = &self.system.model.environment;
+        Sea {
+            current: &self.system.current,
+            current_factor: if self.current_acts {
+                self.system.current.factor(time)
+            } else {
+                0.0
+            },
+            seabed: environment.seabed.as_ref(),
+            depth: environment.water_depth,
+        }
+    }
+}
+
+impl ImplicitSystem for SystemSolver<'_> {
+    fn frame_count(&self) -> usize {
+        self.system.frames.len()
+    }
+
+    fn begin(&mut self) {
+        self.has_prediction = false;
+    }
+
+    fn assemble(
+        &mut self,
+        time: f64,
+        state: &MotionState,
+        weights: Option<&TangentWeights<'_>>,
+        residual: &mut [Vector6],
+    ) {
+        for (motion, vessel) in self.vessels.iter_mut().zip(&self.system.vessels) {
+            *motion = vessel.at(time);
+        }
+        let geometric = if self.has_prediction {
+            GeometricStress::Predicted(&self.predicted)
+        } else {
+            GeometricStress::Elastic
+        };
+        assembly::assemble(
+            self.system,
+            &self.sea(time),
+            &self.vessels,
+            state,
+            weights,
+            geometric,
+            &mut self.pairs,
+            residual,
+            &mut self.matrix,
+        );
+    }
+
+    fn solve(&mut self, residual: &[Vector6], increment: &mut [Vector6]) -> Result<(), usize> {
+        let topology = &self.system.topology;
+        self.factorisations += 1;
+        self.factors
+            .factorise(topology, &self.matrix)
+            .map_err(|error| error.frame)?;
+        for (x, r) in increment.iter_mut().zip(residual) {
+            *x = -r;
+        }
+        self.factors.solve(topology, increment);
+        Ok(())
+    }
+
+    fn moving(&mut self, increment: &[Vector6]) {
+        for ((stress, pair), connector) in self
+            .predicted
+            .iter_mut()
+            .zip(&self.pairs)
+            .zip(&self.system.connectors)
+        {
+            *stress = pair.predicted_stress(connector, increment);
+        }
+        self.has_prediction = true;
+    }
+
+    fn residual_size(&self, residual: &[Vector6]) -> ResidualSize {
+        let mut size = ResidualSize {
+            newtons: 0.0,
+            frame: 0,
+        };
+        for (frame, (r, properties)) in residual.iter().zip(&self.system.frames).enumerate() {
+            let force = r.fixed_rows::<3>(0).norm();
+            let moment = r.fixed_rows::<3>(3).norm() / properties.residual_length;
+            let newtons = force.max(moment);
+            // A residual that is not a number must not hide behind a comparison.
+            if newtons > size.newtons || !newtons.is_finite() {
+                size = ResidualSize { newtons, frame };
+                if !newtons.is_finite() {
+                    break;
+                }
+            }
+        }
+        size
+    }
+}

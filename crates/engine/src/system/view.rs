@@ -1,0 +1,316 @@
+//! Results read off a state: channels and quantities along lines.
+
+use catenix_model::{Axis, ChannelTarget, LineQuantity};
+use catenix_numerics::{MotionState, Vector3, Vector6};
+
+use super::ConnectorLaw;
+use super::assembly::{EvaluatedPair, PairState};
+use super::solver::SystemSolver;
+
+/// A state as results see it. Valid for the state that was assembled last.
+pub struct StepView<'a> {
+    pub(crate) solver: &'a SystemSolver<'a>,
+    pub(crate) state: &'a MotionState,
+    pub(crate) time: f64,
+    pub(crate) step: f64,
+    pub(crate) at_output_time: bool,
+    pub(crate) at_field_time: bool,
+}
+
+/// Local result at a node of a line.
+#[derive(Debug, Clone, Copy, Default)]
+struct NodeResult {
+    position: Vector3,
+    axis: Vector3,
+    tension: f64,
+    shear: f64,
+    bend_moment: f64,
+    torque: f64,
+    curvature: f64,
+}
+
+impl StepView<'_> {
+    /// Time [s].
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Size of the step that led here [s]; 0 at the start.
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// Whether time histories are due.
+    pub fn at_output_time(&self) -> bool {
+        self.at_output_time
+    }
+
+    /// Whether line fields are due.
+    pub fn at_field_time(&self) -> bool {
+        self.at_field_time
+    }
+
+    /// Value of a channel, in the channel's unit. NaN where there is nothing to read.
+    pub fn channel(&self, target: ChannelTarget) -> f64 {
+        match target {
+            ChannelTarget::BodyPosition(body, axis) => pick(&self.body_position(body), axis),
+            ChannelTarget::BodyOffset(body, axis) => {
+                let model = &self.solver.system.model;
+                model.bodies[body].offset_vessel.map_or(f64::NAN, |vessel| {
+                    let offset = self.body_position(body) - self.solver.vessels[vessel].position;
+                    pick(&offset, axis)
+                })
+            }
+            ChannelTarget::BodyTilt(body) => {
+                let frame = self.solver.system.body_frame(body);
+                let axis = self.state.configuration.rotation[frame]
+                    .column(2)
+                    .into_owned();
+                angle_between(&axis, &Vector3::z())
+            }
+            ChannelTarget::VesselPosition(vessel, axis) => {
+                pick(&self.solver.vessels[vessel].position, axis)
+            }
+            ChannelTarget::EndForce(line, end, axis) => pick(
+                &self.end_load(line, end).fixed_rows::<3>(0).into_owned(),
+                axis,
+            ),
+            ChannelTarget::EndMoment(line, end, axis) => pick(
+                &self.end_load(line, end).fixed_rows::<3>(3).into_owned(),
+                axis,
+            ),
+            ChannelTarget::EndTension(line, end) => {
+                self.node(line, self.end_node(line, end)).tension
+            }
+            ChannelTarget::EndDeclination(line, end) => {
+                let node = self.node(line, self.end_node(line, end));
+                angle_between(&node.axis, &-Vector3::z())
+            }
+            ChannelTarget::LinePoint(line, quantity, node) => {
+                self.quantities(line, node)[quantity.index()]
+            }
+        }
+    }
+
+    /// All quantities along a line: one row per [`LineQuantity::ALL`], one column per node,
+    /// row-major, (11 x (n_elements + 1)).
+    ///
+    /// # Panics
+    /// When `out` has another length.
+    pub fn line_quantities(&self, line: usize, out: &mut [f64]) {
+        let nodes = self.solver.system.lines[line].arc_length.len();
+        assert_eq!(
+            out.len(),
+            nodes * LineQuantity::ALL.len(),
+            "one value per quantity and node"
+        );
+        for node in 0..nodes {
+            for (row, value) in self.quantities(line, node).into_iter().enumerate() {
+                out[row * nodes + node] = value;
+            }
+        }
+    }
+
+    /// Smallest and largest effective tension along a line [N].
+    pub fn tension_range(&self, line: usize) -> (f64, f64) {
+        let nodes = self.solver.system.lines[line].arc_length.len();
+        (0..nodes).map(|node| self.node(line, node).tension).fold(
+            (f64::INFINITY, f64::NEG_INFINITY),
+            |(low, high), tension| (low.min(tension), high.max(tension)),
+        )
+    }
+
+    fn body_position(&self, body: usize) -> Vector3 {
+        self.state.configuration.position[self.solver.system.body_frame(body)]
+    }
+
+    fn end_node(&self, line: usize, end: usize) -> usize {
+        if end == 0 {
+            0
+        } else {
+            self.solver.system.lines[line].element_count
+        }
+    }
+
+    /// Force and moment (about the connection point) of a line on what its end is connected to.
+    fn end_load(&self, line: usize, end: usize) -> Vector6 {
+        let system = self.solver.system;
+        let Some(index) = system.lines[line].nodes[self.end_node(line, end)] else {
+            return Vector6::zeros();
+        };
+        let (connector, pair) = (&system.connectors[index], &self.solver.pairs[index]);
+        let forces = pair.forces();
+        let support_first = matches!(connector.law, ConnectorLaw::Joint(_)) || end == 0;
+        let (load, side) = if support_first {
+            (-forces.first, &pair.first)
+        } else {
+            (-forces.second, &pair.second)
+        };
+        let force: Vector3 = load.fixed_rows::<3>(0).into();
+        let moment: Vector3 = load.fixed_rows::<3>(3).into();
+        crate::element::dem::pair::six(&force, &(moment - side.lever.cross(&force)))
+    }
+
+    fn node(&self, line: usize, node: usize) -> NodeResult {
+        let system = self.solver.system;
+        let layout = &system.lines[line];
+        let element = layout.first_frame + node.min(layout.element_count - 1);
+        let Some(index) = layout.nodes[node] else {
+            return self.free_end(line, node);
+        };
+        let pair = &self.solver.pairs[index];
+        let mut result = match &pair.state {
+            PairState::Beam(_) => beam_node(pair),
+            PairState::Joint(_) => joint_node(pair, node == 0),
+        };
+        let stiffness = |k: usize| system.element_type(line, k).bending_stiffness;
+        let last = layout.element_count - 1;
+        // Where the stiffness jumps, the more flexible side has the larger curvature.
+        let bending = stiffness(node.saturating_sub(1)).min(stiffness(node.min(last)));
+        if bending > 0.0 {
+            result.curvature = result.bend_moment / bending;
+        } else {
+            let first: Vector3 = pair.first.rotation.column(0).into();
+            let second: Vector3 = pair.second.rotation.column(0).into();
+            let length = system.frames[element].length;
+            result.curvature = angle_between(&first, &second).to_radians() / length;
+        }
+        result
+    }
+
+    /// A free end carries nothing.
+    fn free_end(&self, line: usize, node: usize) -> NodeResult {
+        let layout = &self.solver.system.lines[line];
+        let at_b = node > 0;
+        let frame = layout.first_frame + if at_b { node - 1 } else { 0 };
+        let axis: Vector3 = self.state.configuration.rotation[frame].column(0).into();
+        let half = self.solver.system.frames[frame].length * if at_b { 0.5 } else { -0.5 };
+        NodeResult {
+            position: self.state.configuration.position[frame] + axis * half,
+            axis,
+            ..NodeResult::default()
+        }
+    }
+
+    fn quantities(&self, line: usize, node: usize) -> [f64; 11] {
+        let system = self.solver.system;
+        let result = self.node(line, node);
+        let environment = &system.model.environment;
+        let depth = (-result.position.z).max(0.0);
+        let last = system.lines[line].element_count - 1;
+        let line_type = system.element_type(line, node.min(last));
+        let outer = environment.water_density * environment.gravity * depth;
+        let inner = line_type.content_density * environment.gravity * depth;
+        let area = |diameter: f64| 0.25 * std::f64::consts::PI * diameter * diameter;
+        // Source: docs/theory/results.md, eq. (1).
+        let wall_tension = result.tension + inner * area(line_type.inner_diameter)
+            - outer * area(line_type.outer_diameter);
+        let stress = line_type.wall.map_or(f64::NAN, |wall| {
+            von_mises(
+                [wall.outer_diameter, wall.inner_diameter],
+                [outer, inner],
+                wall_tension,
+                result.bend_moment,
+                result.torque,
+            )
+        });
+        [
+            result.position.x,
+            result.position.y,
+            result.position.z,
+            result.tension,
+            wall_tension,
+            result.shear,
+            result.bend_moment,
+            result.curvature,
+            result.torque,
+            stress,
+            angle_between(&result.axis, &-Vector3::z()),
+        ]
+    }
+}
+
+fn pick(v: &Vector3, axis: Axis) -> f64 {
+    v[axis as usize]
+}
+
+/// Angle between two vectors [deg].
+fn angle_between(a: &Vector3, b: &Vector3) -> f64 {
+    a.cross(b).norm().atan2(a.dot(b)).to_degrees()
+}
+
+fn split(v: &Vector3, axis: &Vector3) -> (f64, f64) {
+    let along = axis.dot(v);
+    (along, (v - axis * along).norm())
+}
+
+fn beam_node(pair: &EvaluatedPair) -> NodeResult {
+    let PairState::Beam(state) = &pair.state else {
+        return NodeResult::default();
+    };
+    let axis: Vector3 = state.middle.column(0).into();
+    let (tension, shear) = split(&(state.elastic.force + state.damping.force), &axis);
+    let (torque, bend_moment) = split(&(state.elastic.moment + state.damping.moment), &axis);
+    NodeResult {
+        position: (pair.first.point + pair.second.point) * 0.5,
+        axis,
+        tension,
+        shear,
+        bend_moment,
+        torque,
+        curvature: 0.0,
+    }
+}
+
+fn joint_node(pair: &EvaluatedPair, at_a: bool) -> NodeResult {
+    let PairState::Joint(state) = &pair.state else {
+        return NodeResult::default();
+    };
+    let axis: Vector3 = pair.second.rotation.column(0).into();
+    // The gap points from the element's end to the support: forward at end B, backward at end A.
+    let (along, shear) = split(&(state.elastic + state.damping), &axis);
+    let (torque, bend_moment) = split(&state.moment, &axis);
+    NodeResult {
+        position: pair.first.point,
+        axis,
+        tension: if at_a { -along } else { along },
+        shear,
+        bend_moment,
+        torque: if at_a { torque } else { -torque },
+        curvature: 0.0,
+    }
+}
+
+/// Largest von Mises stress over the inner and outer fibres of a thick-walled tube.
+///
+/// `diameters` and `pressures` are outer, inner [m], [Pa]. Source: docs/theory/results.md, eqs. (2)
+/// to (5) (Lame).
+fn von_mises(
+    diameters: [f64; 2],
+    pressures: [f64; 2],
+    wall_tension: f64,
+    bend_moment: f64,
+    torque: f64,
+) -> f64 {
+    let [ro, ri] = diameters.map(|d| 0.5 * d);
+    let area = std::f64::consts::PI * (ro * ro - ri * ri);
+    let second_moment = 0.25 * std::f64::consts::PI * (ro.powi(4) - ri.powi(4));
+    let span = ro * ro - ri * ri;
+    let [po, pi] = pressures;
+    let mean = (pi * ri * ri - po * ro * ro) / span;
+    let swing = (pi - po) * ri * ri * ro * ro / span;
+    let mut largest = 0.0f64;
+    for r in [ro, ri] {
+        if r <= 0.0 {
+            continue;
+        }
+        let (radial, hoop) = (mean - swing / (r * r), mean + swing / (r * r));
+        let shear = torque * r / (2.0 * second_moment);
+        for sign in [1.0, -1.0] {
+            let axial = wall_tension / area + sign * bend_moment * r / second_moment;
+            let sum = (axial - hoop).powi(2) + (hoop - radial).powi(2) + (radial - axial).powi(2);
+            largest = largest.max((0.5 * sum + 3.0 * shear * shear).sqrt());
+        }
+    }
+    largest
+}
