@@ -1,6 +1,6 @@
 //! What the user wrote: the TOML model file, its units and diagnostics, and the validated [`Model`].
 //!
-//! The file is parsed, resolved and validated once ([`file`]); everything after that sees only the
+//! The file is parsed, resolved and validated once ([`mod@file`]); everything after that sees only the
 //! immutable types of this crate, in SI units and radians, axes x, y horizontal and z up with the
 //! origin in the mean sea surface. Names are kept for messages and results; cross references are
 //! indices, so that nothing downstream can meet a name that does not exist.

@@ -190,12 +190,29 @@ impl fmt::Display for ModelFileErrors {
 
 impl std::error::Error for ModelFileErrors {}
 
+impl ModelFileErrors {
+    /// The only error, when it concerns the file as a whole; it then is the headline.
+    fn only_of_file(&self) -> Option<&Diagnostic> {
+        match self.diagnostics.as_slice() {
+            [only] if only.line == 0 => Some(only),
+            _ => None,
+        }
+    }
+}
+
 impl miette::Diagnostic for ModelFileErrors {
     fn source_code(&self) -> Option<&dyn SourceCode> {
         Some(&self.text)
     }
 
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.only_of_file().and_then(miette::Diagnostic::help)
+    }
+
     fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn miette::Diagnostic> + 'a>> {
+        if self.only_of_file().is_some() {
+            return None;
+        }
         let as_dyn = |diagnostic: &'a Diagnostic| diagnostic as &dyn miette::Diagnostic;
         Some(Box::new(self.diagnostics.iter().map(as_dyn)))
     }

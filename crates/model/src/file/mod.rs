@@ -1,8 +1,8 @@
 //! The model file: from TOML text to a validated [`Study`].
 //!
 //! Three steps, each of which collects its errors and goes on as far as it can: the text becomes a
-//! tree of [`node`]s with their places; [`tables`] read the tree into typed, dimension-checked
-//! values; [`resolve`] turns names into indices and checks the system. Load cases are laid over the
+//! tree of `node`s with their places; `tables` read the tree into typed, dimension-checked
+//! values; `resolve` turns names into indices and checks the system. Load cases are laid over the
 //! base as trees, so that an override is read and checked like anything else.
 
 mod define;
@@ -17,7 +17,9 @@ mod reference;
 mod resolve;
 mod schema;
 mod shape;
+mod syntax;
 mod tables;
+mod unit_table;
 mod units;
 
 use std::path::Path;
@@ -29,7 +31,6 @@ pub use load::MOST_BYTES;
 pub use reference::reference_markdown;
 pub use schema::json_schema;
 
-use diagnostic::DiagnosticCode as Code;
 use log::{Finding, Log, join_cases};
 use node::{Entries, Node, NodeValue, merge};
 use read::{Read, ReadTable};
@@ -62,7 +63,7 @@ pub fn parse_study(text: &str, file_name: &str, base_dir: &Path) -> Result<Study
     load::check_text(text, file_name)?;
     let (table, syntax_errors) = toml::de::DeTable::parse_recoverable(text);
     if !syntax_errors.is_empty() {
-        let findings = syntax_errors.iter().map(syntax_finding).collect();
+        let findings = syntax::findings(text, &syntax_errors);
         return Err(ModelFileErrors::new(file_name, text, findings));
     }
     let default_title = || {
@@ -75,19 +76,6 @@ pub fn parse_study(text: &str, file_name: &str, base_dir: &Path) -> Result<Study
         &mut Histories::new(base_dir),
     )
     .map_err(|findings| ModelFileErrors::new(file_name, text, findings))
-}
-
-fn syntax_finding(error: &toml::de::Error) -> Finding {
-    let message = error.message().to_owned();
-    let help = message
-        .contains("duplicate key")
-        .then(|| "a key is written once in its table; remove or rename one of them".to_owned());
-    Finding {
-        span: error.span().unwrap_or(0..0),
-        code: Code::Syntax,
-        message,
-        help,
-    }
 }
 
 fn study(

@@ -10,6 +10,11 @@ use super::read::Read;
 use super::shape::Shape;
 use super::units::{Powers, QuantityError, WrittenNumber, describe_powers, parse_quantity};
 
+/// Largest magnitude of a number, in SI: products of a few such numbers stay finite.
+const LARGEST: f64 = 1e30;
+/// Smallest magnitude of a number other than zero, in SI: products of a few stay above zero.
+const SMALLEST: f64 = 1e-30;
+
 /// A number in SI with the place where it was written.
 ///
 /// A number that could not be read is NaN: its error is already noted, and no check that compares
@@ -74,7 +79,8 @@ impl Sign for NotBelowZero {
 impl<M: Measure, S: Sign> Read for Quantity<M, S> {
     fn read(node: &Node, log: &mut Log) -> Option<Self> {
         let number = read_number(node, M::ACCEPTED, log);
-        let number = number.filter(|number| sign_is_right(number.si, S::RULE, node, log));
+        let number =
+            number.filter(|number| sign_is_right(number.si, S::RULE, M::ACCEPTED, node, log));
         let (si, powers) = match number {
             Some(WrittenNumber { si, powers }) => (si, powers),
             None => (f64::NAN, None),
@@ -149,6 +155,12 @@ fn read_number(node: &Node, accepted: &[Dimension], log: &mut Log) -> Option<Wri
             return None;
         }
     };
+    let magnitude = number.si.abs();
+    if magnitude > LARGEST || (magnitude < SMALLEST && magnitude != 0.0) {
+        let message = format!("`{key}` is out of any range, {} in SI units", number.si);
+        log.error(Code::Number, &node.span, message, expectation(accepted));
+        return None;
+    }
     if let Some(powers) = number.powers
         && !accepted.is_empty()
         && !accepted.iter().any(|dimension| dimension.accepts(powers))
@@ -166,19 +178,20 @@ fn read_number(node: &Node, accepted: &[Dimension], log: &mut Log) -> Option<Wri
     Some(number)
 }
 
-fn sign_is_right(si: f64, rule: SignRule, node: &Node, log: &mut Log) -> bool {
+fn sign_is_right(
+    si: f64,
+    rule: SignRule,
+    accepted: &[Dimension],
+    node: &Node,
+    log: &mut Log,
+) -> bool {
     let expected = match rule {
         SignRule::Positive if si <= 0.0 => "greater than zero",
         SignRule::NonNegative if si < 0.0 => "zero or greater",
         _ => return true,
     };
     let message = format!("`{}` must be {expected}, but is {}", node.key, node.value);
-    log.error(
-        Code::Value,
-        &node.span,
-        message,
-        format!("write a value {expected}"),
-    );
+    log.error(Code::Value, &node.span, message, expectation(accepted));
     false
 }
 

@@ -88,7 +88,12 @@ pub(super) struct TableReader<'a> {
 
 impl<'a> TableReader<'a> {
     /// Opens a table and reports the keys that it cannot have.
-    pub fn open(node: &'a Node, keys: &'a [&str], others: &[&str], log: &mut Log) -> Option<Self> {
+    pub fn open(
+        node: &'a Node,
+        keys: &'a [&str],
+        others: &'a [&str],
+        log: &mut Log,
+    ) -> Option<Self> {
         let Some(entries) = node.entries() else {
             let message = format!(
                 "`{}` must be a table, but is {}",
@@ -107,10 +112,8 @@ impl<'a> TableReader<'a> {
             if keys.contains(&key.as_str()) || others.contains(&key.as_str()) {
                 continue;
             }
-            let free = keys
-                .iter()
-                .copied()
-                .filter(|known| !entries.contains_key(*known));
+            let known = keys.iter().chain(others).copied();
+            let free = known.filter(|known| !entries.contains_key(*known));
             let suggestion = closest(key, free);
             misspelt.extend(suggestion);
             let place = match node.key.as_str() {
@@ -149,11 +152,16 @@ impl<'a> TableReader<'a> {
             return T::absent();
         }
         if !self.misspelt.contains(&key) {
-            let message = match self.node.key.as_str() {
-                "" => format!("`{key}` is missing"),
-                table => format!("`{key}` is missing in `{table}`"),
+            let (message, help) = match self.node.key.as_str() {
+                "" => (
+                    format!("`{key}` is missing"),
+                    format!("write a table [{key}]"),
+                ),
+                table => (
+                    format!("`{key}` is missing in `{table}`"),
+                    format!("write {}", example_of(key, &T::shape())),
+                ),
             };
-            let help = format!("write {}", example_of(key, &T::shape()));
             log.error(Code::MissingKey, &self.node.key_span, message, help);
         }
         T::placeholder(self.node)
@@ -270,6 +278,16 @@ impl Read for Count {
                     None
                 }
             },
+            NodeValue::Float(value) => {
+                let message = format!("`{}` must be a whole number, but is {value}", node.key);
+                log.error(
+                    Code::WrongType,
+                    &node.span,
+                    message,
+                    "write a positive whole number",
+                );
+                None
+            }
             _ => {
                 wrong_type(
                     node,

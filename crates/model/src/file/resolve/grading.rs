@@ -63,6 +63,11 @@ pub(super) fn element_lengths(
                     .as_ref()
                     .map_or(DEFAULT_GROWTH, |growth| growth.si),
             };
+            // A value that could not be read is NaN; it is already reported.
+            let known = size.length + size.middle + size.growth + size.ends[0] + size.ends[1];
+            if known.is_nan() {
+                return None;
+            }
             size.element_lengths(|count| spend(count, &middle.span, budget, log))
         }
         (Some(count), Some(_)) => {
