@@ -1,2 +1,40 @@
-//! The `catenix` command.
-fn main() {}
+//! The `catenix` command: reads a model file, computes it, prints and writes the results.
+//!
+//! It translates between the user and the libraries: no physics and no defaults live here.
+
+mod args;
+mod commands;
+mod compute;
+mod failure;
+mod interrupt;
+mod print;
+mod progress;
+mod tables;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::args::{Command, CommandLine};
+use crate::failure::{Document, Failure};
+
+fn main() -> ExitCode {
+    let line = CommandLine::parse();
+    let (name, json, result) = match &line.command {
+        Command::Check(args) => ("check", args.output.json, commands::check(args)),
+        Command::Statics(args) => ("statics", args.output.json, commands::statics(args)),
+        Command::Run(args) => ("run", args.output.json, commands::run(args)),
+        Command::Summary(args) => ("summary", args.output.json, commands::summary(args)),
+        Command::Schema => ("schema", false, commands::schema()),
+    };
+    let exit = result.unwrap_or_else(|failure: Failure| {
+        let exit = failure.exit();
+        if json {
+            print::json(&Document::of_failure(name, &failure));
+        } else {
+            print::error(&failure.to_text());
+        }
+        exit
+    });
+    ExitCode::from(exit as u8)
+}

@@ -282,7 +282,7 @@ fn chunk_rows(rows: usize, most: usize) -> usize {
 }
 
 /// Unstretched distance of each node from end A [m].
-fn node_arc_length(line: &Line) -> Vec<f64> {
+pub(crate) fn node_arc_length(line: &Line) -> Vec<f64> {
     let lengths = line
         .sections
         .iter()

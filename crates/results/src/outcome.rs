@@ -11,6 +11,8 @@ pub struct CaseOutcome {
     pub status: Status,
     /// Why it failed.
     pub error: Option<CaseError>,
+    /// Remarks of the solver.
+    pub warnings: Vec<String>,
     /// The static solution, when there is one.
     pub statics: Option<StaticsFacts>,
     /// The motion, when there was one.
@@ -57,6 +59,7 @@ impl CaseOutcome {
         CaseOutcome {
             status,
             error,
+            warnings: Vec::new(),
             statics: None,
             dynamics: None,
             cpu_seconds: 0.0,
@@ -68,6 +71,7 @@ impl CaseOutcome {
     pub fn summary(&self, description: &str) -> CaseSummary {
         let mut summary = CaseSummary::empty(description, self.status);
         summary.error = self.error.clone();
+        summary.warnings = self.warnings.clone();
         summary.cpu_seconds = finite(self.cpu_seconds);
         summary.wall_seconds = finite(self.wall_seconds);
         if let Some(statics) = &self.statics {

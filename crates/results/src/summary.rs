@@ -131,6 +131,9 @@ pub struct CaseSummary {
     pub status: Status,
     /// Why it failed.
     pub error: Option<CaseError>,
+    /// Remarks of the solver, for example on a motion that nothing resists.
+    #[serde(default)]
+    pub warnings: Vec<String>,
     /// Simulated time that was reached [s]; null when only statics ran.
     pub simulated_s: Option<f64>,
     /// First and last time of the window over which means and extremes are taken [s].
@@ -172,8 +175,6 @@ pub struct CaseError {
     pub code: String,
     /// What happened: time, element, residual.
     pub message: String,
-    /// What to try.
-    pub help: Option<String>,
 }
 
 /// Results of a free body: means over the window.
@@ -296,6 +297,7 @@ impl CaseSummary {
             description: description.to_owned(),
             status,
             error: None,
+            warnings: Vec::new(),
             simulated_s: None,
             window_s: None,
             bodies: IndexMap::new(),

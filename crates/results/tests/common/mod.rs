@@ -198,6 +198,7 @@ pub fn outcome(status: Status, end_time_s: f64) -> CaseOutcome {
     CaseOutcome {
         status,
         error: None,
+        warnings: Vec::new(),
         statics: Some(StaticsFacts {
             iterations: 7,
             residual_n: 0.5,

@@ -1,0 +1,109 @@
+//! The command line: commands, flags, and the help text.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+const EXIT_CODES: &str = "\
+Exit codes:
+    0  everything was computed
+    1  the solver gave up in at least one load case; what was computed is kept
+    2  the command line is wrong
+    3  the model file is wrong
+    4  a file could not be read or written
+  130  interrupted; what was computed is kept";
+
+/// Dynamics of kilometre-long pipes in the sea.
+#[derive(Debug, Parser)]
+#[command(name = "catenix", version, after_help = EXIT_CODES, max_term_width = 100)]
+pub(crate) struct CommandLine {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Read a model file, report its errors, and print what it describes
+    #[command(after_help = EXIT_CODES)]
+    Check(CheckArgs),
+    /// Find the static equilibrium of each load case
+    #[command(after_help = EXIT_CODES)]
+    Statics(StaticsArgs),
+    /// Compute the load cases, write the results and figures, and print a summary
+    #[command(after_help = EXIT_CODES)]
+    Run(RunArgs),
+    /// Print the summary of results, also of an interrupted run
+    #[command(after_help = EXIT_CODES)]
+    Summary(SummaryArgs),
+    /// Print the JSON schema of the model file, for editors
+    Schema,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    #[command(flatten)]
+    pub(crate) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct StaticsArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    #[command(flatten)]
+    pub(crate) output: OutputArgs,
+    #[command(flatten)]
+    pub(crate) work: WorkArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RunArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Directory for results.zarr, summary.json and figures; earlier results in it are replaced
+    /// [default: results/<name of the model file>]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) output: OutputArgs,
+    #[command(flatten)]
+    pub(crate) work: WorkArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SummaryArgs {
+    /// Directory that `catenix run` wrote, or the results.zarr in it
+    #[arg(value_name = "RESULTS")]
+    pub(crate) results: PathBuf,
+    #[command(flatten)]
+    pub(crate) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ModelArgs {
+    /// Model file (TOML)
+    #[arg(value_name = "MODEL")]
+    pub(crate) file: PathBuf,
+    /// Take only this load case; may be given several times
+    #[arg(long = "case", value_name = "NAME")]
+    pub(crate) cases: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct OutputArgs {
+    /// Print one JSON document instead of tables; errors are part of it
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct WorkArgs {
+    /// Load cases computed at once [default: as many as there are processors]
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+    /// Show no progress
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}

@@ -1,0 +1,82 @@
+//! One file per command.
+
+mod check;
+mod run;
+mod statics;
+mod summary;
+
+pub(crate) use check::{CheckReport, check};
+pub(crate) use run::run;
+pub(crate) use statics::statics;
+pub(crate) use summary::summary;
+
+use catenix_model::file::read_study;
+use catenix_model::{LoadCase, Study};
+use catenix_results::Status;
+use rayon::prelude::*;
+
+use crate::args::{ModelArgs, WorkArgs};
+use crate::failure::{Exit, Failure};
+use crate::print;
+use crate::progress::{CaseProgress, Progress};
+
+/// Prints the JSON schema of the model file.
+pub(crate) fn schema() -> Result<Exit, Failure> {
+    print::json(&catenix_model::file::json_schema());
+    Ok(Exit::Success)
+}
+
+/// Reads the model file.
+fn read(args: &ModelArgs) -> Result<Study, Failure> {
+    Ok(read_study(&args.file).map_err(Box::new)?)
+}
+
+/// The cases that the user wants, in file order; all of them when none is named.
+fn chosen_cases<'a>(study: &'a Study, args: &ModelArgs) -> Result<Vec<&'a LoadCase>, Failure> {
+    let known = |name: &String| study.cases.iter().any(|case| case.name == *name);
+    if let Some(name) = args.cases.iter().find(|name| !known(name)) {
+        let names: Vec<&str> = study.cases.iter().map(|case| case.name.as_str()).collect();
+        return Err(Failure::UnknownCase {
+            name: name.clone(),
+            available: names.join(", "),
+        });
+    }
+    let chosen = |case: &&LoadCase| args.cases.is_empty() || args.cases.contains(&case.name);
+    Ok(study.cases.iter().filter(chosen).collect())
+}
+
+/// Does `work` for every case on several threads; the results are in the order of the cases.
+fn for_each_case<T: Send>(
+    cases: &[&LoadCase],
+    args: &WorkArgs,
+    work: impl Fn(&LoadCase, &CaseProgress) -> T + Sync,
+) -> Result<Vec<T>, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(args.threads.map_or(0, usize::from))
+        .build()
+        .map_err(|error| Failure::Start {
+            what: "threads",
+            message: error.to_string(),
+        })?;
+    let progress = Progress::new(
+        args.quiet,
+        cases.iter().map(|case| case.name.chars().count()),
+    );
+    Ok(pool.install(|| {
+        cases
+            .par_iter()
+            // One case at a time per thread, begun in file order.
+            .with_max_len(1)
+            .map(|case| work(case, &progress.begin(&case.name)))
+            .collect()
+    }))
+}
+
+/// Exit code of a study that ended with this status.
+fn exit_of(status: Status) -> Exit {
+    match status {
+        Status::Complete => Exit::Success,
+        Status::Interrupted => Exit::Interrupted,
+        Status::Failed | Status::Running | Status::Pending => Exit::SolverFailed,
+    }
+}

@@ -1,0 +1,109 @@
+//! `catenix run`: computes the load cases, writes results and figures, prints a summary.
+
+use std::path::{Path, PathBuf};
+
+use catenix_results::figure::study_chart;
+use catenix_results::{Provenance, ResultStore, StoreError, StoredStudy, Summary};
+use serde::Serialize;
+
+use super::statics::study_summary;
+use super::{chosen_cases, exit_of, for_each_case, read};
+use crate::args::{ModelArgs, RunArgs};
+use crate::compute::compute_case;
+use crate::failure::{Document, Exit, Failure};
+use crate::interrupt::Interrupt;
+use crate::{print, tables};
+
+/// Pixels per unit of a figure: 1800 across, 300 dots per inch at the width of a page.
+const PNG_SCALE: f64 = 2.0;
+
+/// What `run --json` prints.
+#[derive(Debug, Serialize)]
+struct RunReport<'a> {
+    #[serde(flatten)]
+    summary: &'a Summary,
+    /// The store.
+    results: &'a Path,
+    /// Everything else that was written.
+    files: &'a [PathBuf],
+}
+
+pub(crate) fn run(args: &RunArgs) -> Result<Exit, Failure> {
+    let study = read(&args.model)?;
+    let provenance = provenance(&args.model)?;
+    let cases = chosen_cases(&study, &args.model)?;
+    let directory = args
+        .out
+        .clone()
+        .unwrap_or_else(|| default_directory(&args.model.file));
+    let store = ResultStore::create(&directory, &study, &cases, &provenance)?;
+    let interrupt = Interrupt::listen()?;
+    let results = for_each_case(&cases, &args.work, |case, progress| {
+        compute_case(case, store.record_case(case), progress, &interrupt)
+    })?;
+    let results = results
+        .into_iter()
+        .collect::<Result<Vec<_>, StoreError>>()?;
+    let named = cases.iter().map(|case| case.name.clone()).zip(results);
+    let summary = study_summary(&study.title, &study.note, &provenance, named);
+
+    let results = store.path().to_path_buf();
+    let mut files = vec![store.finish(&summary)?];
+    files.extend(write_figures(&results, &directory)?);
+    let exit = exit_of(summary.status);
+    if args.output.json {
+        let report = RunReport {
+            summary: &summary,
+            results: &results,
+            files: &files,
+        };
+        print::json(&Document::new("run", exit, &report));
+    } else {
+        print::text(&tables::summary_text(&summary));
+        print::text(&tables::files_text(&results, &files));
+    }
+    Ok(exit)
+}
+
+/// Draws every figure of the study as SVG and PNG.
+fn write_figures(store: &Path, directory: &Path) -> Result<Vec<PathBuf>, StoreError> {
+    let study = StoredStudy::open(store)?;
+    let figures = directory.join("figures");
+    let mut files = Vec::new();
+    for figure in study.figures() {
+        let drawing = study_chart(&study, &figure)?.draw();
+        let stem = figure.name.replace(['/', '\\', ':'], "_");
+        for (extension, content) in [
+            ("svg", drawing.to_svg().into_bytes()),
+            ("png", drawing.to_png(PNG_SCALE)?),
+        ] {
+            let path = figures.join(format!("{stem}.{extension}"));
+            std::fs::create_dir_all(&figures)
+                .and_then(|()| std::fs::write(&path, content))
+                .map_err(|source| StoreError::Write {
+                    path: path.clone(),
+                    source,
+                })?;
+            files.push(path);
+        }
+    }
+    Ok(files)
+}
+
+/// Version, model file, and its text.
+pub(super) fn provenance(model: &ModelArgs) -> Result<Provenance, Failure> {
+    let file = model.file.display().to_string();
+    let text = std::fs::read_to_string(&model.file).map_err(|source| Failure::Read {
+        path: file.clone(),
+        source,
+    })?;
+    Ok(Provenance {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        model_file: file,
+        model_text: text,
+    })
+}
+
+fn default_directory(model: &Path) -> PathBuf {
+    Path::new("results").join(model.file_stem().unwrap_or_else(|| "model".as_ref()))
+}

@@ -1,0 +1,297 @@
+//! Computes one load case with the engine and records it.
+
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use catenix_engine::{
+    DynamicsError, DynamicsReport, EnergyAccount, StaticSolution, StaticsError, StepView, System,
+    simulate, solve_statics,
+};
+use catenix_model::{ChannelTarget, LoadCase};
+use catenix_results::{
+    CaseError, CaseOutcome, CaseRecorder, CaseSummary, DynamicsFacts, Sample, StaticsFacts, Status,
+    StoreError,
+};
+use cpu_time::ThreadTime;
+
+use crate::interrupt::Interrupt;
+use crate::progress::CaseProgress;
+
+/// Elapsed time between two updates of a progress bar.
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
+
+/// What ends a case early.
+enum Halt {
+    Interrupted,
+    Failed(CaseError),
+}
+
+/// What ends a recorded case early: the solver's reason, or the disk's.
+enum Stop {
+    Halt(Halt),
+    Store(StoreError),
+}
+
+impl From<Halt> for Stop {
+    fn from(halt: Halt) -> Self {
+        Stop::Halt(halt)
+    }
+}
+
+/// Elapsed and processor time of a case, and what is known of its outcome so far.
+struct Account {
+    wall: Instant,
+    cpu: ThreadTime,
+    statics: Option<StaticsFacts>,
+    dynamics: Option<DynamicsFacts>,
+    warnings: Vec<String>,
+}
+
+/// Computes a case and writes it into `recorder`.
+///
+/// A solver that gives up makes a failed case, which is a result too; an error is a store that
+/// cannot be written.
+pub(crate) fn compute_case(
+    case: &LoadCase,
+    mut recorder: CaseRecorder,
+    progress: &CaseProgress,
+    interrupt: &Interrupt,
+) -> Result<CaseSummary, StoreError> {
+    let mut account = Account::begin();
+    let end = run_case(case, &mut recorder, progress, interrupt, &mut account);
+    progress.end();
+    let (status, error) = match end {
+        Ok(()) => (Status::Complete, None),
+        Err(Stop::Halt(Halt::Interrupted)) => (Status::Interrupted, None),
+        Err(Stop::Halt(Halt::Failed(error))) => (Status::Failed, Some(error)),
+        Err(Stop::Store(error)) => return Err(error),
+    };
+    recorder.finish(&account.outcome(status, error))
+}
+
+/// Finds the static equilibrium of a case.
+pub(crate) fn compute_statics(
+    case: &LoadCase,
+    progress: &CaseProgress,
+    interrupt: &Interrupt,
+) -> CaseSummary {
+    let mut account = Account::begin();
+    let system = assemble(case);
+    let solution = match &system {
+        Ok(system) => settle(system, progress, interrupt, &mut account),
+        Err(error) => Err(Halt::Failed(error.clone())),
+    };
+    progress.end();
+    let (status, error) = match &solution {
+        Ok(_) => (Status::Complete, None),
+        Err(Halt::Interrupted) => (Status::Interrupted, None),
+        Err(Halt::Failed(error)) => (Status::Failed, Some(error.clone())),
+    };
+    let outcome = account.outcome(status, error);
+    match solution {
+        Ok(solution) => {
+            CaseSummary::of_static_state(case, &EngineSample(&solution.view()), &outcome)
+        }
+        Err(_) => outcome.summary(&case.description),
+    }
+}
+
+fn run_case(
+    case: &LoadCase,
+    recorder: &mut CaseRecorder,
+    progress: &CaseProgress,
+    interrupt: &Interrupt,
+    account: &mut Account,
+) -> Result<(), Stop> {
+    let system = assemble(case).map_err(Halt::Failed)?;
+    let start = settle(&system, progress, interrupt, account)?;
+    recorder
+        .record_static(case, &EngineSample(&start.view()))
+        .map_err(Stop::Store)?;
+    let Some(dynamics) = &case.model.dynamics else {
+        return Ok(());
+    };
+    progress.begin_motion();
+    let mut last_shown = Instant::now();
+    let mut store_error = None;
+    let result = simulate(&system, &start, &mut |view| {
+        if let Err(error) = recorder.record(&EngineSample(view)) {
+            store_error = Some(error);
+            return ControlFlow::Break(());
+        }
+        if last_shown.elapsed() >= PROGRESS_INTERVAL {
+            progress.motion(view.time(), dynamics.duration);
+            last_shown = Instant::now();
+        }
+        flow(interrupt.requested())
+    });
+    if let Some(error) = store_error {
+        return Err(Stop::Store(error));
+    }
+    match result {
+        Ok(report) => {
+            account.dynamics = Some(dynamics_facts(&report));
+            if report.interrupted {
+                Err(Halt::Interrupted.into())
+            } else {
+                Ok(())
+            }
+        }
+        Err(error) => {
+            account.dynamics = error.report().map(dynamics_facts);
+            Err(Halt::Failed(case_error(dynamics_code(&error), &error)).into())
+        }
+    }
+}
+
+fn assemble(case: &LoadCase) -> Result<System, CaseError> {
+    System::new(&case.model).map_err(|error| case_error("system::unusable", &error))
+}
+
+fn settle<'a>(
+    system: &'a System,
+    progress: &CaseProgress,
+    interrupt: &Interrupt,
+    account: &mut Account,
+) -> Result<StaticSolution<'a>, Halt> {
+    if interrupt.requested() {
+        return Err(Halt::Interrupted);
+    }
+    let mut last_shown = Instant::now();
+    let solution = solve_statics(system, &mut |state| {
+        if last_shown.elapsed() >= PROGRESS_INTERVAL {
+            progress.statics(state.iteration, state.residual_n);
+            last_shown = Instant::now();
+        }
+        flow(interrupt.requested())
+    })
+    .map_err(statics_halt)?;
+    account.statics = Some(StaticsFacts {
+        iterations: solution.iterations,
+        residual_n: solution.residual_n,
+    });
+    account.warnings.clone_from(&solution.warnings);
+    Ok(solution)
+}
+
+impl Account {
+    fn begin() -> Self {
+        Account {
+            wall: Instant::now(),
+            cpu: ThreadTime::now(),
+            statics: None,
+            dynamics: None,
+            warnings: Vec::new(),
+        }
+    }
+
+    fn outcome(self, status: Status, error: Option<CaseError>) -> CaseOutcome {
+        CaseOutcome {
+            status,
+            error,
+            warnings: self.warnings,
+            statics: self.statics,
+            dynamics: self.dynamics,
+            cpu_seconds: self.cpu.elapsed().as_secs_f64(),
+            wall_seconds: self.wall.elapsed().as_secs_f64(),
+        }
+    }
+}
+
+/// The engine's view of a step, as results see it.
+pub(crate) struct EngineSample<'a, 'b>(pub(crate) &'a StepView<'b>);
+
+impl Sample for EngineSample<'_, '_> {
+    fn time(&self) -> f64 {
+        self.0.time()
+    }
+
+    fn at_output_time(&self) -> bool {
+        self.0.at_output_time()
+    }
+
+    fn at_field_time(&self) -> bool {
+        self.0.at_field_time()
+    }
+
+    fn channel(&self, target: ChannelTarget) -> f64 {
+        self.0.channel(target)
+    }
+
+    fn line_quantities(&self, line: usize, out: &mut [f64]) {
+        self.0.line_quantities(line, out);
+    }
+}
+
+fn flow(stop: bool) -> ControlFlow<()> {
+    if stop {
+        ControlFlow::Break(())
+    } else {
+        ControlFlow::Continue(())
+    }
+}
+
+fn statics_halt(error: StaticsError) -> Halt {
+    match &error {
+        StaticsError::Interrupted { .. } => Halt::Interrupted,
+        StaticsError::NoEquilibrium { .. } => {
+            Halt::Failed(case_error("statics::no_equilibrium", &error))
+        }
+        StaticsError::FreeMotion { .. } => Halt::Failed(case_error("statics::free_motion", &error)),
+        _ => Halt::Failed(case_error("statics::other", &error)),
+    }
+}
+
+fn dynamics_code(error: &DynamicsError) -> &'static str {
+    match error {
+        DynamicsError::NotConverged { .. } => "dynamics::not_converged",
+        DynamicsError::NoDynamics => "dynamics::no_dynamics",
+        _ => "dynamics::other",
+    }
+}
+
+fn case_error(code: &str, error: &dyn std::error::Error) -> CaseError {
+    CaseError {
+        code: code.to_owned(),
+        message: error.to_string(),
+    }
+}
+
+fn dynamics_facts(report: &DynamicsReport) -> DynamicsFacts {
+    let statistics = &report.statistics;
+    // Taken apart without `..`: a new term of the account must be recorded too.
+    let EnergyAccount {
+        kinetic_j,
+        elastic_j,
+        potential_j,
+        stored_change_j,
+        work_drag_j,
+        work_added_mass_j,
+        work_buoyancy_j,
+        work_seabed_j,
+        work_structural_damping_j,
+        work_moved_ends_j,
+        imbalance,
+    } = report.energy;
+    DynamicsFacts {
+        end_time_s: report.end_time_s,
+        steps: statistics.steps,
+        rejected_steps: statistics.rejected_steps,
+        iterations: statistics.iterations,
+        factorisations: statistics.factorisations,
+        residual_n: statistics.largest_residual_n,
+        energy: vec![
+            ("kinetic_j", kinetic_j),
+            ("elastic_j", elastic_j),
+            ("potential_j", potential_j),
+            ("stored_change_j", stored_change_j),
+            ("work_drag_j", work_drag_j),
+            ("work_added_mass_j", work_added_mass_j),
+            ("work_buoyancy_j", work_buoyancy_j),
+            ("work_seabed_j", work_seabed_j),
+            ("work_structural_damping_j", work_structural_damping_j),
+            ("work_moved_ends_j", work_moved_ends_j),
+        ],
+        energy_imbalance: imbalance,
+    }
+}
