@@ -179,4 +179,6 @@ fn deep_and_wide_text_is_survived() {
         .map(|index| format!("k{index} = 1\n"))
         .collect();
     assert!(parse_study(&wide, "wide.toml", Path::new("")).is_err());
+    let long_key = "k".repeat(10_000_000) + " = 1\n";
+    assert!(parse_study(&long_key, "long.toml", Path::new("")).is_err());
 }

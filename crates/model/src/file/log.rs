@@ -3,6 +3,11 @@
 use super::diagnostic::DiagnosticCode;
 use super::node::Span;
 
+/// Most findings kept: a file with more is wrong throughout, and memory is finite.
+const MOST_FINDINGS: usize = 10_000;
+/// Longest misspelt word that is compared with the words that exist [bytes].
+const LONGEST_WORD: usize = 100;
+
 /// One thing that is wrong, at a place in the file.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Finding {
@@ -32,6 +37,9 @@ impl Log {
         message: impl Into<String>,
         help: impl Into<String>,
     ) {
+        if self.findings.len() == MOST_FINDINGS {
+            return;
+        }
         let (message, help) = (message.into(), help.into());
         let help = (!help.is_empty()).then_some(help);
         self.findings.push(Finding {
@@ -86,6 +94,9 @@ pub(super) fn closest<'a>(
     word: &str,
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> Option<&'a str> {
+    if word.len() > LONGEST_WORD {
+        return None;
+    }
     let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
     let word = plain(word);
     candidates

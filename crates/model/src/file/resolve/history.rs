@@ -70,6 +70,9 @@ fn read_text(path: &Path) -> Result<String, Vec<CsvError>> {
     let relative = "the path is relative to the folder of the model file";
     let metadata = match std::fs::metadata(path) {
         Ok(metadata) => metadata,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            return fail("there is no such file".to_owned(), relative);
+        }
         Err(error) => return fail(format!("cannot be read: {error}"), relative),
     };
     if !metadata.is_file() {
