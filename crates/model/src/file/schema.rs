@@ -1,5 +1,7 @@
 //! JSON schema of the model file, for completion and checks in editors.
 //!
+//! It is made from the shapes of the tables rather than derived from Rust types (schemars), because
+//! one definition must also carry units, defaults and signs, and read with all errors at once.
 //! Everything is written out in place, without `$ref`: editors of TOML show the description beside
 //! a key only then.
 
