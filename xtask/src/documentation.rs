@@ -13,7 +13,7 @@ use cargo_metadata::Message;
 use crate::steps::cargo;
 
 /// Units that stand alone in brackets; longer ones (`[N m]`, `[m/s]`) are no links to rustdoc.
-const UNITS: [&str; 15] = [
+const UNITS: [&str; 16] = [
     "s", "m", "N", "kg", "rad", "deg", "Pa", "Hz", "W", "J", "K", "m2", "m3", "m4", "kN",
 ];
 

@@ -14,6 +14,8 @@ use cargo_metadata::MetadataCommand;
 use crate::steps::{cargo, run_command};
 
 const SCRIPT: &str = "crates/results/tests/read_back.py";
+/// The example of the results crate that writes the stores.
+const WRITER: &str = "synthetic_store";
 const REQUIREMENTS: &str = "xtask/read-back-requirements.txt";
 
 /// Writes stores and reads them back with Python.
@@ -21,33 +23,31 @@ pub(crate) fn run(root: &Path) -> Result<(), String> {
     let target = target_folder(root)?;
     let python = environment(root, &target.join("read-back-venv"))?;
     let stores = empty_folder(&target.join("read-back-stores"))?;
-    write_stores(root, &stores)?;
+    write_stores(root, &target, &stores)?;
     run_command(Command::new(python).arg(root.join(SCRIPT)).arg(&stores))
 }
 
 /// Runs the program that writes the stores. It writes the last one half and then aborts, as a
 /// killed run would; any other end is a failure.
-fn write_stores(root: &Path, stores: &Path) -> Result<(), String> {
-    let example = [
-        "--package",
-        "catenix-results",
-        "--example",
-        "synthetic_store",
-    ];
-    run_command(cargo(root, &["build", "--quiet"]).args(example))?;
-    let status = cargo(root, &["run", "--quiet"])
-        .args(example)
-        .arg("--")
+fn write_stores(root: &Path, target: &Path, stores: &Path) -> Result<(), String> {
+    // Built as the tests are, for the whole workspace: with the features that one package alone
+    // would ask for, cargo would compile most dependencies again.
+    run_command(&mut cargo(
+        root,
+        &["build", "--workspace", "--example", WRITER],
+    ))?;
+    let program = format!("{WRITER}{}", std::env::consts::EXE_SUFFIX);
+    let status = Command::new(target.join("debug").join("examples").join(program))
         .arg(stores)
         .status()
-        .map_err(|error| format!("the stores could not be written: {error}"))?;
+        .map_err(|error| format!("`{WRITER}` did not start: {error}"))?;
     // Killed by a signal, a program has no exit code; Windows gives an aborted one a code as well.
     let aborted = status.code().is_none() || (cfg!(windows) && !status.success());
     if aborted && stores.join("killed").exists() {
         return Ok(());
     }
     Err(format!(
-        "the program that writes the stores should have aborted in the last one: {status}"
+        "`{WRITER}` should have aborted while it wrote its last store, but: {status}"
     ))
 }
 
