@@ -25,7 +25,10 @@ const ROTATION_LIMIT: f64 = 0.4;
 /// Residual at which an intermediate pseudo-step is good enough, over the reference force.
 const STEP_TOLERANCE: f64 = 1e-5;
 /// Pseudo-step beyond which the inertia term no longer matters [s].
-const LARGEST_STEP: f64 = 1e5;
+const LARGEST_STEP: f64 = 1e4;
+/// Squared frequency of the touch of stiffness that keeps free spins out of the matrix
+/// [rad2/s2]; it acts on the search only, never on the residual.
+const SPIN_HOLD: f64 = 1e-3;
 /// Pseudo-step below which the search is hopeless [s].
 const SMALLEST_STEP: f64 = 1e-4;
 
@@ -289,6 +292,7 @@ impl<'s, 'a> Search<'s, 'a> {
                     iterations: iteration,
                 });
             }
+            self.solver.hold_spins(&self.state, SPIN_HOLD);
             if iteration == STEP_ITERATIONS
                 || self
                     .solver
@@ -309,6 +313,9 @@ impl<'s, 'a> Search<'s, 'a> {
                 return Err(StaticsError::Interrupted {
                     iterations: self.iterations,
                 });
+            }
+            if shortened > SHORTENED_ITERATIONS {
+                break;
             }
         }
         Ok(StepEnd::Failed)

@@ -115,7 +115,6 @@ mod tests {
     fn derivatives_match_finite_differences() {
         let lump = Lump {
             total_mass: 3.0,
-            net_lift: 20.0,
             drag: 4.0,
         };
         let m = LumpMotion {

@@ -264,15 +264,17 @@ fn connect(
             None
         };
         let connector = match end {
-            None => Connector {
-                law: ConnectorLaw::Beam(ConnectorStiffness::between(
-                    half(layout, node - 1),
-                    half(layout, node),
-                )),
-                first: mount(layout, node - 1, true),
-                second: mount(layout, node, false),
-                place: Place::Link(layout.first_frame + node - 1),
-            },
+            None => {
+                let stiffness =
+                    ConnectorStiffness::between(half(layout, node - 1), half(layout, node));
+                let shift = Vector3::x() * stiffness.shift;
+                Connector {
+                    law: ConnectorLaw::Beam(stiffness),
+                    first: mount(layout, node - 1, true).shifted(&shift),
+                    second: mount(layout, node, false).shifted(&shift),
+                    place: Place::Link(layout.first_frame + node - 1),
+                }
+            }
             Some(end) => {
                 let LineEnd::Connected(connection) = &line.ends[end] else {
                     continue;
@@ -343,7 +345,9 @@ fn end_connector(
     // laid in its first shape is not twisted.
     let untwisted = so3::shortest_arc(&tangent, &(support.rotation * direction)) * element_rotation;
     if connection.joint == Joint::Fixed {
-        let clamp = on_support(support.rotation.transpose() * untwisted);
+        let shift = Vector3::x() * stiffness.shift;
+        let clamp = on_support(support.rotation.transpose() * untwisted).shifted(&shift);
+        let element = element.shifted(&shift);
         let (first, second) = if end == 0 {
             (clamp, element)
         } else {

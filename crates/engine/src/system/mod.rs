@@ -127,6 +127,14 @@ pub(crate) struct Mount {
     pub axes: Matrix3,
 }
 
+impl Mount {
+    /// Moved by `shift`, in the connection axes [m].
+    pub fn shifted(mut self, shift: &Vector3) -> Mount {
+        self.arm += self.axes * shift;
+        self
+    }
+}
+
 /// Where the blocks of a connector go in the matrix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Place {
@@ -155,6 +163,16 @@ pub(crate) enum ConnectorLaw {
     Beam(ConnectorStiffness),
     /// First is the support, second the element.
     Joint(JointStiffness),
+}
+
+impl ConnectorLaw {
+    /// How far beyond the elements' meeting point, towards end B, the connector acts [m].
+    pub fn shift(&self) -> f64 {
+        match self {
+            ConnectorLaw::Beam(stiffness) => stiffness.shift,
+            ConnectorLaw::Joint(_) => 0.0,
+        }
+    }
 }
 
 /// Where a line's parts are.

@@ -146,9 +146,11 @@ impl StepView<'_> {
         } else {
             (-forces.second, &pair.second)
         };
+        let shift = side.rotation.column(0) * connector.law.shift();
+        let arm = side.lever - shift;
         let force: Vector3 = load.fixed_rows::<3>(0).into();
         let moment: Vector3 = load.fixed_rows::<3>(3).into();
-        crate::element::dem::pair::six(&force, &(moment - side.lever.cross(&force)))
+        crate::element::dem::pair::six(&force, &(moment - arm.cross(&force)))
     }
 
     fn node(&self, line: usize, node: usize) -> NodeResult {
@@ -159,8 +161,9 @@ impl StepView<'_> {
             return self.free_end(line, node);
         };
         let pair = &self.solver.pairs[index];
+        let shift = system.connectors[index].law.shift();
         let mut result = match &pair.state {
-            PairState::Beam(_) => beam_node(pair),
+            PairState::Beam(_) => beam_node(pair, shift),
             PairState::Joint(_) => joint_node(pair, node == 0),
         };
         let stiffness = |k: usize| system.element_type(line, k).bending_stiffness;
@@ -244,15 +247,19 @@ fn split(v: &Vector3, axis: &Vector3) -> (f64, f64) {
     (along, (v - axis * along).norm())
 }
 
-fn beam_node(pair: &EvaluatedPair) -> NodeResult {
+/// Results at the elements' meeting point, `shift` before the point where the connector acts.
+fn beam_node(pair: &EvaluatedPair, shift: f64) -> NodeResult {
     let PairState::Beam(state) = &pair.state else {
         return NodeResult::default();
     };
     let axis: Vector3 = state.middle.column(0).into();
-    let (tension, shear) = split(&(state.elastic.force + state.damping.force), &axis);
-    let (torque, bend_moment) = split(&(state.elastic.moment + state.damping.moment), &axis);
+    let force = state.elastic.force + state.damping.force;
+    let arm = axis * shift;
+    let moment = state.elastic.moment + state.damping.moment + arm.cross(&force);
+    let (tension, shear) = split(&force, &axis);
+    let (torque, bend_moment) = split(&moment, &axis);
     NodeResult {
-        position: (pair.first.point + pair.second.point) * 0.5,
+        position: (pair.first.point + pair.second.point) * 0.5 - arm,
         axis,
         tension,
         shear,

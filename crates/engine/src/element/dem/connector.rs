@@ -165,14 +165,13 @@ impl ConnectorState {
 
         // Derivatives by gap (slot "translation") and by rotations at fixed gap.
         let by_middle = k.force_gap * gap_hat - hat(&stress.force);
-        let force_bend = k.force_bend * map;
         let force = Sensitivity {
             translation: k.force_gap,
-            first_rotation: by_middle * middle_by.first_rotation - force_bend,
-            second_rotation: by_middle * middle_by.second_rotation + force_bend,
+            first_rotation: by_middle * middle_by.first_rotation,
+            second_rotation: by_middle * middle_by.second_rotation,
         };
         let conjugate = self.conjugate_moment(&half, &stress.moment);
-        let moment_by_middle = map * k.moment_gap * gap_hat - hat(&conjugate);
+        let moment_by_middle = -hat(&conjugate);
         let bend_dot_moment = self.bend.dot(&stress.moment);
         let bend_outer = self.bend * self.bend.transpose();
         let stretch = stress.moment * self.bend.transpose() * (2.0 * half.alpha_s)
@@ -181,7 +180,7 @@ impl ConnectorState {
                 * half.beta;
         let moment_bend = (map * k.moment_bend + stretch) * map;
         let moment = Sensitivity {
-            translation: map * k.moment_gap,
+            translation: Matrix3::zeros(),
             first_rotation: moment_by_middle * middle_by.first_rotation - moment_bend,
             second_rotation: moment_by_middle * middle_by.second_rotation + moment_bend,
         };
@@ -241,8 +240,8 @@ impl ConnectorState {
         let turn = |v: &Vector3, factor: f64| {
             (Matrix3::identity() * axis.dot(v) + axis * v.transpose()) * factor
         };
-        let force_turn = (turn(q, along) + hat(d) * stiffness.coupling) * axis_hat;
-        let moment_turn = (turn(d, twist) - hat(q) * stiffness.coupling) * axis_hat;
+        let force_turn = turn(q, along) * axis_hat;
+        let moment_turn = turn(d, twist) * axis_hat;
 
         let lever = [hat(&first.lever), hat(&second.lever)];
         let gap_hat = hat(&self.gap);
@@ -259,17 +258,21 @@ impl ConnectorState {
         let rate_translation = Matrix3::identity() * v - spin_hat;
         let spin_first = -rates.rotation[0] * v;
         let spin_second = rates.rotation[1] * v;
-        let build = |by_gap: &Matrix3, by_bend: &Matrix3, by_turn: &Matrix3| Sensitivity {
-            translation: by_gap * rate_translation * tau,
-            first_rotation: (by_gap * rate_first + by_bend * spin_first
-                - by_turn * middle_by.first_rotation)
+        let force = Sensitivity {
+            translation: k.force_gap * rate_translation * tau,
+            first_rotation: (k.force_gap * rate_first - force_turn * middle_by.first_rotation)
                 * tau,
-            second_rotation: (by_gap * rate_second + by_bend * spin_second
-                - by_turn * middle_by.second_rotation)
+            second_rotation: (k.force_gap * rate_second - force_turn * middle_by.second_rotation)
                 * tau,
         };
-        let force = build(&k.force_gap, &k.force_bend, &force_turn);
-        let moment = build(&k.moment_gap, &k.moment_bend, &moment_turn);
+        let moment = Sensitivity {
+            translation: Matrix3::zeros(),
+            first_rotation: (k.moment_bend * spin_first - moment_turn * middle_by.first_rotation)
+                * tau,
+            second_rotation: (k.moment_bend * spin_second
+                - moment_turn * middle_by.second_rotation)
+                * tau,
+        };
         let force_hat = hat(&self.damping.force);
         let mut couple = force.led_by(&gap_hat);
         couple.translation -= force_hat;

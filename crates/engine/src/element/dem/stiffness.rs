@@ -11,9 +11,6 @@ use super::connector::Stress;
 /// Small enough that its dispersion, this x (k l)^2 / 24, hides below the chain's own error.
 const RIGID_SHEAR: f64 = 1e-4;
 
-/// Margin by which the shear compliance keeps the corrected connector positive definite.
-const DEFINITE_MARGIN: f64 = 1.2;
-
 /// Transversely isotropic stiffness of a connector.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConnectorStiffness {
@@ -25,17 +22,16 @@ pub struct ConnectorStiffness {
     pub torsion: f64,
     /// About the two normal axes [N m/rad].
     pub bending: f64,
-    /// Shear-bending coupling [N/rad]: zero between like neighbours.
-    pub coupling: f64,
+    /// How far beyond the elements' meeting point, towards end B, the connector acts [m]: zero
+    /// between like neighbours.
+    pub shift: f64,
     /// Damping time: damping = this x stiffness [s].
     pub damping: f64,
 }
 
-/// The four 3 x 3 parts of the stiffness in global axes.
+/// The two 3 x 3 parts of the stiffness in global axes.
 pub(super) struct StiffnessMatrices {
     pub force_gap: Matrix3,
-    pub force_bend: Matrix3,
-    pub moment_gap: Matrix3,
     pub moment_bend: Matrix3,
 }
 
@@ -55,9 +51,9 @@ struct Compliance {
     shear: f64,
     torsion: f64,
     bending: f64,
-    /// l^2 / 12 EI: the end correction of the trapezoidal curvature sum.
+    /// l^2 / 12 EI: the end correction of the sum that stands for the integral of curvature.
     correction: f64,
-    stiff_damping: f64,
+    damping_time: f64,
 }
 
 impl HalfElement<'_> {
@@ -80,7 +76,7 @@ impl HalfElement<'_> {
             torsion: 0.5 * l / t.torsional_stiffness,
             bending,
             correction: l * l / (12.0 * t.bending_stiffness),
-            stiff_damping: t.structural_damping,
+            damping_time: t.structural_damping,
         }
     }
 }
@@ -110,25 +106,20 @@ impl ConnectorStiffness {
             first.as_ref().map_or(0.0, part) + second.as_ref().map_or(0.0, part)
         };
         let bending = sum(|c| c.bending);
-        let mut shear = sum(|c| c.shear);
         // Damping times, weighted with the axial compliance so that each half keeps its own.
-        let damping = sum(|c| c.stiff_damping * c.axial) / sum(|c| c.axial);
-        let (mut bending_stiffness, mut coupling) = (0.0, 0.0);
-        if bending.is_finite() {
-            let correction =
-                second.map_or(0.0, |c| c.correction) - first.map_or(0.0, |c| c.correction);
-            shear = shear.max(DEFINITE_MARGIN * correction * correction / bending);
-            let determinant = shear * bending - correction * correction;
-            bending_stiffness = shear / determinant;
-            coupling = correction / determinant;
-            shear = determinant / bending;
-        }
+        let damping = sum(|c| c.damping_time * c.axial) / sum(|c| c.axial);
+        let shift = if bending.is_finite() {
+            let correction = |side: Option<Compliance>| side.map_or(0.0, |c| c.correction);
+            (correction(second) - correction(first)) / bending
+        } else {
+            0.0
+        };
         ConnectorStiffness {
             axial: 1.0 / sum(|c| c.axial),
-            shear: 1.0 / shear,
+            shear: 1.0 / sum(|c| c.shear),
             torsion: 1.0 / sum(|c| c.torsion),
-            bending: bending_stiffness,
-            coupling,
+            bending: 1.0 / bending,
+            shift,
             damping,
         }
     }
@@ -141,22 +132,16 @@ impl ConnectorStiffness {
         let extension = axis.dot(gap);
         let twist = axis.dot(bend);
         Stress {
-            force: gap * self.shear + axis * ((self.axial - self.shear) * extension)
-                - axis.cross(bend) * self.coupling,
-            moment: bend * self.bending
-                + axis * ((self.torsion - self.bending) * twist)
-                + axis.cross(gap) * self.coupling,
+            force: gap * self.shear + axis * ((self.axial - self.shear) * extension),
+            moment: bend * self.bending + axis * ((self.torsion - self.bending) * twist),
         }
     }
 
     #[inline]
     pub(super) fn matrices(&self, axis: &Vector3) -> StiffnessMatrices {
         let outer = axis * axis.transpose();
-        let cross = catenix_numerics::so3::hat(axis) * self.coupling;
         StiffnessMatrices {
             force_gap: Matrix3::identity() * self.shear + outer * (self.axial - self.shear),
-            force_bend: -cross,
-            moment_gap: cross,
             moment_bend: Matrix3::identity() * self.bending + outer * (self.torsion - self.bending),
         }
     }

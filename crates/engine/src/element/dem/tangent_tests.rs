@@ -68,7 +68,7 @@ fn stiffness() -> ConnectorStiffness {
         shear: 900.0,
         torsion: 70.0,
         bending: 110.0,
-        coupling: 130.0,
+        shift: 0.0,
         damping: 0.05,
     }
 }
