@@ -74,7 +74,7 @@ impl Failure {
     }
 
     /// Text for the terminal; errors of the model file with the lines that they are about.
-    pub(crate) fn to_text(self) -> String {
+    pub(crate) fn into_text(self) -> String {
         match self {
             Failure::Model(errors) => format!("{:?}", miette::Report::new(*errors)),
             other => format!("error: {other}"),

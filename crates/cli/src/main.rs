@@ -32,7 +32,7 @@ fn main() -> ExitCode {
         if json {
             print::json(&Document::of_failure(name, &failure));
         } else {
-            print::error(&failure.to_text());
+            print::error(&failure.into_text());
         }
         exit
     });

@@ -148,10 +148,11 @@ impl RangeGraph {
 
     /// Minimum, mean and maximum of the value at `index`.
     pub fn extent(&self, index: usize) -> Extent {
+        // Adding zero turns -0 into 0, which reads better.
         Extent {
-            min: self.min[index],
-            mean: self.mean[index],
-            max: self.max[index],
+            min: self.min[index] + 0.0,
+            mean: self.mean[index] + 0.0,
+            max: self.max[index] + 0.0,
         }
     }
 }

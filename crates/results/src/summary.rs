@@ -335,6 +335,13 @@ impl CaseSummary {
             .iter()
             .map(|value| comparison(value, source))
             .collect();
+        if self.status != Status::Complete {
+            // A mean over another stretch of the motion is not what was published.
+            for comparison in &mut self.published {
+                comparison.computed = None;
+                comparison.difference = None;
+            }
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use unicode_width::UnicodeWidthStr;
 
-use super::WIDTH;
+use super::{WIDTH, wrapped};
 
 /// A table whose columns are as wide as their content.
 #[derive(Debug, Default)]
@@ -97,7 +97,7 @@ impl Grid {
             if index > 0 {
                 line.push_str("  ");
             }
-            let mut pieces = wrap(cell, *width).into_iter();
+            let mut pieces = wrapped(cell, *width).into_iter();
             let first = pieces.next().unwrap_or_default();
             let space = " ".repeat(width.saturating_sub(first.width()));
             if self.left.contains(&index) {
@@ -116,23 +116,6 @@ impl Grid {
             text.push_str(&format!("{}{piece}\n", " ".repeat(indent)));
         }
     }
-}
-
-fn wrap(cell: &str, width: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    if cell.width() <= width {
-        return vec![cell.to_owned()];
-    }
-    for word in cell.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if line.width() + 1 + word.width() <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
 }
 
 #[cfg(test)]

@@ -10,6 +10,8 @@ pub(crate) use check::check_text;
 pub(crate) use statics::statics_text;
 pub(crate) use summary::{files_text, summary_text};
 
+use unicode_width::UnicodeWidthStr;
+
 /// Most columns of a terminal that a table fills.
 const WIDTH: usize = 100;
 
@@ -18,31 +20,33 @@ const CASES_PER_TABLE: usize = 6;
 
 /// A title, underlined.
 fn heading(text: &str) -> String {
-    format!(
-        "\n{text}\n{}\n",
-        "=".repeat(unicode_width::UnicodeWidthStr::width(text))
-    )
+    format!("\n{text}\n{}\n", "=".repeat(text.width()))
 }
 
 /// A remark under a table, wrapped.
 fn remark(text: &str) -> String {
-    let mut lines = String::new();
-    let mut width = 0;
+    if text.trim().is_empty() {
+        return String::new();
+    }
+    format!("Note: {}\n", wrapped(text, WIDTH - 6).join("\n      "))
+}
+
+/// A paragraph, wrapped, with an empty line below.
+fn paragraph(text: &str) -> String {
+    format!("{}\n\n", wrapped(text, WIDTH).join("\n"))
+}
+
+/// Lines no wider than `width`, broken between words; a longer word stays whole.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
-        let word_width = unicode_width::UnicodeWidthStr::width(word);
-        if width > 0 && width + 1 + word_width > WIDTH - 6 {
-            lines.push_str("\n      ");
-            width = 0;
-        } else if width > 0 {
-            lines.push(' ');
-            width += 1;
+        match lines.last_mut() {
+            Some(line) if line.width() + 1 + word.width() <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
         }
-        lines.push_str(word);
-        width += word_width;
     }
-    if lines.is_empty() {
-        lines
-    } else {
-        format!("Note: {lines}\n")
-    }
+    lines
 }

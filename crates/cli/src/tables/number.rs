@@ -3,16 +3,15 @@
 /// A number with four or so significant digits and no exponent where it can be avoided.
 pub(crate) fn number(value: f64) -> String {
     let size = value.abs();
-    let text = match size {
-        _ if !value.is_finite() => return "-".to_owned(),
-        0.0 => return "0".to_owned(),
-        _ if size >= 1e9 || size < 1e-3 => return format!("{value:.2e}"),
+    match size {
+        _ if !value.is_finite() => "-".to_owned(),
+        0.0 => "0".to_owned(),
+        _ if !(1e-3..1e9).contains(&size) => format!("{value:.2e}"),
         _ if size >= 1000.0 => format!("{value:.0}"),
         _ if size >= 100.0 => format!("{value:.1}"),
         _ if size >= 1.0 => format!("{value:.2}"),
         _ => format!("{value:.4}"),
-    };
-    text
+    }
 }
 
 /// The same for a number that may not exist.

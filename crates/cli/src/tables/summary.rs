@@ -6,7 +6,7 @@ use catenix_results::{CaseSummary, EndSummary, Extent, LineSummary, Status, Summ
 
 use super::grid::Grid;
 use super::number::{count, fixed, maybe, number};
-use super::{CASES_PER_TABLE, heading, remark};
+use super::{CASES_PER_TABLE, heading, paragraph, remark};
 
 /// Published against computed figures, then results and solver statistics of each case.
 pub(crate) fn summary_text(summary: &Summary) -> String {
@@ -46,7 +46,10 @@ pub(crate) fn errors_text(summary: &Summary) -> String {
     let mut text = String::new();
     for (name, case) in &summary.cases {
         if let Some(error) = &case.error {
-            text.push_str(&format!("Case {name} failed: {}\n\n", error.message));
+            text.push_str(&paragraph(&format!(
+                "Case {name} failed: {}",
+                error.message
+            )));
         }
     }
     // The cases of a study often share a remark: print it once.
@@ -60,7 +63,7 @@ pub(crate) fn errors_text(summary: &Summary) -> String {
         }
     }
     for (warning, names) in remarks {
-        text.push_str(&format!("Case {}: {warning}\n\n", names.join(", ")));
+        text.push_str(&paragraph(&format!("Case {}: {warning}", names.join(", "))));
     }
     text
 }
@@ -91,19 +94,13 @@ fn published(summary: &Summary) -> String {
     for (name, case) in &summary.cases {
         for value in &case.published {
             any = true;
-            let computed = if case.status == Status::Complete {
-                value.computed
-            } else {
-                None
-            };
-            let difference = computed.and(value.difference);
             grid.row([
                 name.clone(),
                 value.channel.clone(),
                 value.unit.clone(),
                 number(value.published),
-                maybe(computed),
-                maybe(difference),
+                maybe(value.computed),
+                maybe(value.difference),
                 value.source.clone(),
             ]);
         }
@@ -231,7 +228,8 @@ fn end_b(line: &LineSummary) -> &EndSummary {
 fn window_label(cases: &[(&String, &CaseSummary)]) -> String {
     let lengths: Vec<f64> = cases
         .iter()
-        .filter_map(|(_, c)| c.window_s)
+        .filter(|(_, case)| case.status == Status::Complete)
+        .filter_map(|(_, case)| case.window_s)
         .map(|[start, end]| end - start)
         .collect();
     match lengths.first() {
@@ -240,7 +238,7 @@ fn window_label(cases: &[(&String, &CaseSummary)]) -> String {
                 .iter()
                 .all(|length| (length - first).abs() < 1e-6 * first) =>
         {
-            format!("over the last {} s", number(*first))
+            format!("over the last {first:.6} s").replace(".000000", "")
         }
         _ => String::new(),
     }

@@ -1,0 +1,172 @@
+//! What each command prints, writes and exits with.
+
+mod common;
+
+use common::{Bench, key_paths, repository_file};
+
+const BAD_CASE: &str = "
+[cases.bad]
+description = 'asks for the impossible'
+dynamics.tolerance = 1e-30
+";
+
+#[test]
+fn run_writes_results_figures_and_a_comparison() {
+    let bench = Bench::new("");
+    let (code, stdout, stderr) = bench.run(&["run", "model.toml"]);
+    assert_eq!(code, 0, "{stderr}");
+    assert!(
+        stderr.is_empty(),
+        "no progress where nobody looks: {stderr}"
+    );
+    for text in [
+        "published",
+        "nobody",
+        "Note: A test.",
+        "times real time",
+        "energy imbalance",
+    ] {
+        assert!(stdout.contains(text), "{text} is missing in\n{stdout}");
+    }
+    for file in [
+        "results.zarr/zarr.json",
+        "summary.json",
+        "figures/offset.svg",
+        "figures/offset.png",
+    ] {
+        assert!(bench.path("results/model").join(file).is_file(), "{file}");
+    }
+    let (code, again, _) = bench.run(&["summary", "results/model"]);
+    assert_eq!(code, 0);
+    assert!(stdout.starts_with(&again), "summary prints the same tables");
+    let (code, _, stderr) = bench.run(&["run", "model.toml", "--threads", "1", "--quiet"]);
+    assert_eq!(code, 0, "earlier results are replaced: {stderr}");
+}
+
+#[test]
+fn json_documents_have_the_keys_that_the_guide_lists() {
+    let bench = Bench::new(BAD_CASE);
+    let guide = repository_file("docs/cli.md");
+    let mut missing = Vec::new();
+    for arguments in [
+        &["check", "model.toml"][..],
+        &["statics", "model.toml"],
+        &["run", "model.toml", "--out", "out"],
+        &["summary", "out"],
+        &["check", "nothing.toml"],
+    ] {
+        let (_, document) = bench.json(arguments);
+        for key in ["command", "ok", "exit_code", "error"] {
+            assert!(document.get(key).is_some(), "{key} in {arguments:?}");
+        }
+        let mut keys = Vec::new();
+        key_paths(&document, "", &mut keys);
+        missing.extend(keys.into_iter().filter(|key| {
+            let last = key.rsplit('.').next().unwrap_or_default();
+            last != "*" && !guide.contains(&format!("`{last}`"))
+        }));
+    }
+    missing.sort();
+    missing.dedup();
+    assert!(missing.is_empty(), "not in docs/cli.md: {missing:#?}");
+}
+
+#[test]
+fn a_failing_case_does_not_stop_the_others() {
+    let bench = Bench::new(BAD_CASE);
+    let (code, document) = bench.json(&["run", "model.toml", "--out", "out"]);
+    assert_eq!(code, 1);
+    assert_eq!(document["ok"], false);
+    let (one, bad) = (&document["cases"]["one"], &document["cases"]["bad"]);
+    assert_eq!(
+        (one["status"].as_str(), bad["status"].as_str()),
+        (Some("complete"), Some("failed"))
+    );
+    assert!(one["bodies"]["pump"]["offset_x_m"].is_f64());
+    assert_eq!(bad["error"]["code"], "dynamics::not_converged");
+    assert!(
+        bad["error"]["message"]
+            .as_str()
+            .unwrap()
+            .contains("line 'pipe'")
+    );
+    let (code, document) = bench.json(&["summary", "out"]);
+    assert_eq!((code, document["status"].as_str()), (0, Some("failed")));
+    let (code, _) = bench.json(&["run", "model.toml", "--out", "out", "--case", "one"]);
+    assert_eq!(code, 0);
+}
+
+#[test]
+fn statics_reports_end_forces_in_balance() {
+    let bench = Bench::new("");
+    let (code, document) = bench.json(&["statics", "model.toml"]);
+    assert_eq!(code, 0);
+    let case = &document["cases"]["one"];
+    let pipe = &case["lines"]["pipe"];
+    let force = |end: &str| pipe[end]["force_z_n"]["mean"].as_f64().unwrap();
+    let (_, overview) = bench.json(&["check", "model.toml"]);
+    let weight = overview["cases"]["one"]["lines"]["pipe"]["wet_weight_n"]
+        .as_f64()
+        .unwrap();
+    // Ten kilonewtons of pipe balance to the static tolerance, 1e-7 of the system's weight.
+    assert!((force("end_a") + force("end_b") + weight).abs() < 1e-6 * weight.abs());
+    assert!((force("end_b") - 15e3).abs() < 0.1);
+    assert_eq!(case["steps"], serde_json::Value::Null);
+    let (code, stdout, _) = bench.run(&["statics", "model.toml"]);
+    assert_eq!(code, 0);
+    assert!(stdout.contains("effective tension"), "{stdout}");
+}
+
+#[test]
+fn wrong_input_ends_with_the_code_that_the_help_lists() {
+    let bench = Bench::new("[output]\n");
+    let (code, _, stderr) = bench.run(&["check", "model.toml"]);
+    assert_eq!(code, 3);
+    assert!(stderr.contains("model.toml:"), "{stderr}");
+    let (code, document) = bench.json(&["run", "model.toml"]);
+    assert_eq!(code, 3);
+    assert!(
+        document["error"]["diagnostics"][0]["line"]
+            .as_u64()
+            .unwrap()
+            > 1
+    );
+
+    let bench = Bench::new("");
+    assert_eq!(bench.run(&[]).0, 2);
+    assert_eq!(bench.run(&["run"]).0, 2);
+    let (code, _, stderr) = bench.run(&["run", "model.toml", "--case", "two"]);
+    assert_eq!(code, 2);
+    assert!(stderr.contains("it has one"), "{stderr}");
+    assert_eq!(bench.run(&["run", "nothing.toml"]).0, 4);
+    assert_eq!(bench.run(&["summary", "nothing"]).0, 4);
+    std::fs::create_dir(bench.path("thesis")).unwrap();
+    std::fs::write(bench.path("thesis/chapter.tex"), "keep").unwrap();
+    let (code, _, stderr) = bench.run(&["run", "model.toml", "--out", "thesis"]);
+    assert_eq!(code, 4);
+    assert!(stderr.contains("left alone"), "{stderr}");
+    let help = bench.run(&["--help"]).1;
+    for code in ["  0  ", "  1  ", "  2  ", "  3  ", "  4  ", "130  "] {
+        assert!(help.contains(code), "{help}");
+    }
+}
+
+#[test]
+fn check_prints_the_system_and_schema_is_json() {
+    let bench = Bench::new("");
+    let (code, stdout, _) = bench.run(&["check", "model.toml"]);
+    assert_eq!(code, 0);
+    for text in [
+        "no errors",
+        "ship (ball), pump (fixed)",
+        "offsets from ship",
+        "Figures: offset",
+    ] {
+        assert!(stdout.contains(text), "{text} is missing in\n{stdout}");
+    }
+    assert!(stdout.lines().all(|line| line.chars().count() <= 100));
+    let (code, stdout, _) = bench.run(&["schema"]);
+    assert_eq!(code, 0);
+    let schema: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    assert!(schema["properties"]["lines"].is_object());
+}
