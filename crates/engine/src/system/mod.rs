@@ -11,6 +11,9 @@ mod shape;
 mod solver;
 mod view;
 
+#[cfg(test)]
+mod tangent_test;
+
 use catenix_model::{ChannelTarget, LineType, Model};
 use catenix_numerics::{Configuration, Matrix3, Topology, Vector3};
 use thiserror::Error;

@@ -20,7 +20,7 @@ pub struct SystemSolver<'a> {
     pub(super) pairs: Vec<EvaluatedPair>,
     predicted: Vec<PredictedStress>,
     has_prediction: bool,
-    matrix: BlockMatrix,
+    pub(super) matrix: BlockMatrix,
     factors: Factorisation,
     factorisations: usize,
 }
