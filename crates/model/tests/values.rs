@@ -86,7 +86,7 @@ fn defaults_are_the_documented_ones() {
     assert_eq!(
         dynamics.step,
         StepControl::Adaptive {
-            accuracy: 2e-4,
+            accuracy: 3e-6,
             min: 1e-4,
             max: 0.5
         }

@@ -228,33 +228,45 @@ impl GeneralisedAlpha {
         system.begin();
         let mut iterations = 0;
         loop {
-            for (weight, travel) in self.rotation_weights.iter_mut().zip(&self.travel) {
-                *weight = so3::left_jacobian_inverse(&travel.fixed_rows::<3>(3).into_owned());
+            // After the first iteration the residual alone usually shows convergence; the matrix
+            // is only built when it does not.
+            let mut converged = false;
+            if iterations > 0 {
+                system.assemble(end_time, &self.trial, None, &mut self.residual);
+                let residual = system.residual_size(&self.residual);
+                converged = residual.newtons <= newton.tolerance_newtons;
             }
-            let weights = TangentWeights {
-                velocity,
-                acceleration,
-                rotation: Some(&self.rotation_weights),
-            };
-            system.assemble(end_time, &self.trial, Some(&weights), &mut self.residual);
+            if !converged {
+                for (weight, travel) in self.rotation_weights.iter_mut().zip(&self.travel) {
+                    *weight = so3::left_jacobian_inverse(&travel.fixed_rows::<3>(3).into_owned());
+                }
+                let rotation = Some(self.rotation_weights.as_slice());
+                let weights = TangentWeights {
+                    velocity,
+                    acceleration,
+                    rotation,
+                };
+                system.assemble(end_time, &self.trial, Some(&weights), &mut self.residual);
+            }
             let residual = system.residual_size(&self.residual);
-            let failure = |singular| NewtonFailure {
+            let failure = NewtonFailure {
                 iterations,
                 residual,
-                singular,
+                singular: false,
             };
             if !residual.newtons.is_finite() {
-                return Err(failure(false));
+                return Err(failure);
             }
             if residual.newtons <= newton.tolerance_newtons {
+                let local_error = self.local_error(step);
                 return Ok(StepOutcome {
                     iterations,
                     residual,
-                    local_error: self.local_error(step),
+                    local_error,
                 });
             }
             if iterations == newton.max_iterations {
-                return Err(failure(false));
+                return Err(failure);
             }
             system
                 .solve(&self.residual, &mut self.increment)

@@ -243,17 +243,12 @@ impl Simulation<'_> {
                 if ratio < 1.0 && step > min * (1.0 + 1e-9) {
                     return Err((SAFETY * ratio * step).clamp((0.2 * step).max(min), step));
                 }
-                let mut factor = (SAFETY * ratio).clamp(0.5, 1.5);
-                if iterations > self.settings.max_iterations / 2 {
-                    factor = factor.min(1.0);
-                }
-                let proposal = (step * factor).clamp(min, max);
                 // A step cut short by an output time says nothing against the size asked for.
-                Ok(if factor >= 1.0 {
-                    proposal.max(asked.min(step * 1.5))
-                } else {
-                    proposal
-                })
+                let mut proposal = (SAFETY * ratio * step).clamp(0.5 * step, 2.0 * asked);
+                if iterations > self.settings.max_iterations / 2 {
+                    proposal = proposal.min(step);
+                }
+                Ok(proposal.clamp(min, max))
             }
         }
     }

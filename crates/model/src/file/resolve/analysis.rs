@@ -10,7 +10,7 @@ use crate::{DynamicsSettings, Motion, StaticsSettings, StepControl, Vessel};
 use super::Slot;
 
 /// Error per step that is allowed where the file does not say [-]; named in the key's description.
-const DEFAULT_ACCURACY: f64 = 2e-4;
+const DEFAULT_ACCURACY: f64 = 3e-6;
 /// Smallest step where the file does not say [s]; named in the key's description.
 const DEFAULT_MIN_STEP: f64 = 1e-4;
 /// Largest step where the file does not say [s]; named in the key's description.

@@ -24,7 +24,7 @@ table! {
         duration: Positive<Time>,
         /// Constant step; absent: the step is chosen so that its error stays below `accuracy`.
         step: Option<Positive<Time>>,
-        /// Error allowed per step, as a fraction of the system's reference length; absent: 2e-4.
+        /// Error allowed per step, as a fraction of the system's reference length; absent: 3e-6.
         accuracy: Option<Positive<Dimensionless>>,
         /// Smallest step; absent: 1e-4 s.
         min_step: Option<Positive<Time>>,
