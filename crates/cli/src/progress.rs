@@ -51,6 +51,7 @@ impl CaseProgress {
     pub(crate) fn begin_motion(&self) {
         self.0
             .set_style(style("{prefix} [{bar:40}] {msg} {eta} left"));
+        self.0.set_message("");
         self.0.reset_eta();
     }
 

@@ -10,10 +10,12 @@ pub(crate) use run::run;
 pub(crate) use statics::statics;
 pub(crate) use summary::summary;
 
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use catenix_model::file::read_study;
 use catenix_model::{LoadCase, Study};
 use catenix_results::Status;
-use rayon::prelude::*;
 
 use crate::args::{ModelArgs, WorkArgs};
 use crate::failure::{Exit, Failure};
@@ -45,31 +47,42 @@ fn chosen_cases<'a>(study: &'a Study, args: &ModelArgs) -> Result<Vec<&'a LoadCa
     Ok(study.cases.iter().filter(chosen).collect())
 }
 
-/// Does `work` for every case on several threads; the results are in the order of the cases.
+/// Does `work` for every case on several threads, begun in file order; the results are in that
+/// order too.
+///
+/// Plain threads that take the next case from a queue: a case is seconds to hours of work, and a
+/// pool that splits the list in halves would begin with the first and the middle one.
 fn for_each_case<T: Send>(
     cases: &[&LoadCase],
     args: &WorkArgs,
     work: impl Fn(&LoadCase, &CaseProgress) -> T + Sync,
-) -> Result<Vec<T>, Failure> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(args.threads.map_or(0, usize::from))
-        .build()
-        .map_err(|error| Failure::Start {
-            what: "threads",
-            message: error.to_string(),
-        })?;
+) -> Vec<T> {
+    let available = || std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = args
+        .threads
+        .map_or_else(available, usize::from)
+        .min(cases.len());
     let progress = Progress::new(
         args.quiet,
         cases.iter().map(|case| case.name.chars().count()),
     );
-    Ok(pool.install(|| {
-        cases
-            .par_iter()
-            // One case at a time per thread, begun in file order.
-            .with_max_len(1)
-            .map(|case| work(case, &progress.begin(&case.name)))
+    let next = AtomicUsize::new(0);
+    let take_cases = || {
+        let mut done = Vec::new();
+        while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+            done.push((case.name.as_str(), work(case, &progress.begin(&case.name))));
+        }
+        done
+    };
+    let mut results: Vec<(&str, T)> = std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(take_cases)).collect();
+        workers
+            .into_iter()
+            .flat_map(|worker| worker.join().unwrap_or_else(|panic| resume_unwind(panic)))
             .collect()
-    }))
+    });
+    results.sort_by_key(|(name, _)| cases.iter().position(|case| case.name == *name));
+    results.into_iter().map(|(_, result)| result).collect()
 }
 
 /// Exit code of a study that ended with this status.

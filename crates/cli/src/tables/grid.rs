@@ -97,7 +97,12 @@ impl Grid {
             if index > 0 {
                 line.push_str("  ");
             }
-            let mut pieces = wrapped(cell, *width).into_iter();
+            let pieces = if cell.width() <= *width {
+                vec![cell.clone()]
+            } else {
+                wrapped(cell, *width)
+            };
+            let mut pieces = pieces.into_iter();
             let first = pieces.next().unwrap_or_default();
             let space = " ".repeat(width.saturating_sub(first.width()));
             if self.left.contains(&index) {
@@ -128,12 +133,14 @@ mod tests {
         grid.header(["case", "offset", "description"]);
         grid.row(["a".to_owned(), "-22.5".to_owned(), "word ".repeat(30)]);
         grid.group("more");
+        grid.row(["  b", "2", "y"]);
         grid.row(["软管", "1", "x"]);
         let text = grid.text();
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines[2].find("-22.5"), Some(7));
         assert!(lines.iter().all(|line| line.width() <= WIDTH), "{text}");
         assert_eq!(lines[3].find("word"), lines[2].find("word"));
+        assert!(lines[lines.len() - 2].starts_with("  b"), "{text}");
         assert_eq!(lines[lines.len() - 1].width(), 15);
     }
 }

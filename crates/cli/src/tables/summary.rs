@@ -32,11 +32,19 @@ pub(crate) fn summary_text(summary: &Summary) -> String {
     text
 }
 
-/// Paths that were written.
+/// Paths that were written; a figure's two formats share a line.
 pub(crate) fn files_text(results: &Path, files: &[PathBuf]) -> String {
-    let mut text = format!("Results: {}\n", results.display());
-    for file in files {
-        text.push_str(&format!("         {}\n", file.display()));
+    let mut text = format!("Written: {}\n", results.display());
+    for file in files
+        .iter()
+        .filter(|file| file.extension().is_none_or(|end| end != "png"))
+    {
+        let and_png = if file.extension().is_some_and(|end| end == "svg") {
+            ", .png"
+        } else {
+            ""
+        };
+        text.push_str(&format!("         {}{and_png}\n", file.display()));
     }
     text
 }
