@@ -16,6 +16,9 @@ const HISTORY_CHUNK_ROWS: usize = 4096;
 /// to rewrite at every flush and to fetch while scrubbing through time.
 const FIELD_CHUNK_VALUES: usize = 1 << 17;
 
+/// Most rows that are laid out ahead. A longer run grows its arrays while it goes on.
+const MOST_PLANNED_ROWS: usize = 1 << 22;
+
 /// All arrays of a load case that grow with time.
 #[derive(Debug)]
 pub(crate) struct CaseArrays {
@@ -272,6 +275,7 @@ fn planned_times(duration: f64, interval: f64) -> Vec<f64> {
     } else {
         0
     };
+    let intervals = intervals.min(MOST_PLANNED_ROWS);
     (0..=intervals)
         .map(|index| index as f64 * interval)
         .collect()
@@ -303,5 +307,6 @@ mod tests {
         assert_eq!(planned_times(0.3, 0.1).len(), 4);
         assert_eq!(planned_times(1.0, 0.3).len(), 4);
         assert_eq!(planned_times(0.0, 0.1), [0.0]);
+        assert_eq!(planned_times(1e12, 1e-3).len(), MOST_PLANNED_ROWS + 1);
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use catenix_model::{LineQuantity, LoadCase};
 
-use crate::summary::{CaseLayout, LineLayout, PublishedLayout};
+use crate::summarise::{CaseLayout, LineLayout, PublishedLayout};
 use crate::zarr::Attributes;
 
 /// Format number of the stores that this version writes, and the highest that it reads.

@@ -22,6 +22,7 @@ mod statistics;
 mod store;
 mod store_reader;
 mod stored_statistics;
+mod summarise;
 mod summary;
 mod zarr;
 

@@ -8,7 +8,7 @@ use crate::case_arrays::{CaseArrays, LineArrays};
 use crate::layout;
 use crate::outcome::CaseOutcome;
 use crate::store_reader::StoredCase;
-use crate::summary::{CaseLayout, StatisticsSource};
+use crate::summarise::{CaseLayout, StatisticsSource};
 use crate::zarr::{Attributes, Group};
 use crate::{CaseSummary, Extent, RangeGraph, Sample, Status, StoreError, WindowStatistics};
 

@@ -4,7 +4,7 @@ use catenix_model::{Channel, LineQuantity, LoadCase, all_channels};
 
 use crate::case_arrays::node_arc_length;
 use crate::layout;
-use crate::summary::StatisticsSource;
+use crate::summarise::StatisticsSource;
 use crate::{CaseOutcome, CaseSummary, Extent, RangeGraph, Sample};
 
 impl CaseSummary {

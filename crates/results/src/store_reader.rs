@@ -9,7 +9,8 @@ use serde_json::Value;
 use crate::layout::{self, FORMAT_KEY, RANGE_SUFFIXES, STORE_FORMAT, STORE_NAME, component};
 use crate::store::StoredFigure;
 use crate::stored_statistics::StoredStatistics;
-use crate::summary::{CaseLayout, Status};
+use crate::summarise::CaseLayout;
+use crate::summary::Status;
 use crate::zarr::{Array, Attributes, Group};
 use crate::{CaseSummary, RangeGraph, StoreError, Summary};
 

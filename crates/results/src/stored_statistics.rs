@@ -3,7 +3,7 @@
 use catenix_model::LineQuantity;
 
 use crate::store_reader::StoredCase;
-use crate::summary::StatisticsSource;
+use crate::summarise::StatisticsSource;
 use crate::{Extent, RangeGraph};
 
 /// Statistics over the last stretch of a stored case.

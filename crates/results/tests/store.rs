@@ -110,6 +110,19 @@ fn a_killed_run_keeps_what_was_flushed() {
 }
 
 #[test]
+fn rows_beyond_the_planned_ones_extend_the_arrays() {
+    let dir = tempfile::tempdir().unwrap();
+    write_store(dir.path(), &study(&["a"]), 30.0, Status::Complete);
+    let case = StoredStudy::open(dir.path()).unwrap().case("a").unwrap();
+    let history = case.channel("ship.x").unwrap();
+    assert_eq!(history.times_s.len(), 121);
+    assert_eq!(history.values, history.times_s);
+    let field = case.field("pipe", LineQuantity::X, 0.0).unwrap();
+    assert_eq!(field.times_s.last(), Some(&30.0));
+    assert_eq!(field.values.last(), Some(&line_value(0, 3, 30.0)));
+}
+
+#[test]
 fn only_earlier_results_are_replaced() {
     let dir = tempfile::tempdir().unwrap();
     let study = study(&["a"]);
