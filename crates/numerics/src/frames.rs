@@ -23,6 +23,8 @@ impl Configuration {
     }
 
     /// Moves every frame by its increment: x + dx, exp(dtheta) R.
+    ///
+    /// Source: docs/theory/rotations.md, eq. (5).
     pub fn retract(&mut self, increment: &[Vector6]) {
         for ((position, rotation), d) in self
             .position

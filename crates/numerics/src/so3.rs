@@ -107,6 +107,8 @@ pub fn left_jacobian_inverse(phi: &Vector3) -> Matrix3 {
 }
 
 /// Pulls a matrix that drifted off SO(3) by round-off back on (one Newton step).
+///
+/// Source: docs/theory/rotations.md, eq. (7).
 #[inline]
 pub fn orthonormalise(r: &Matrix3) -> Matrix3 {
     r * (Matrix3::identity() * 1.5 - r.transpose() * r * 0.5)
@@ -130,6 +132,8 @@ pub fn any_normal(direction: &Vector3) -> Vector3 {
 }
 
 /// The smallest rotation that turns `from` into `to` (unit vectors), as a matrix.
+///
+/// Source: docs/theory/rotations.md, eq. (8).
 pub fn shortest_arc(from: &Vector3, to: &Vector3) -> Matrix3 {
     let cross = from.cross(to);
     let sin = cross.norm();

@@ -1,4 +1,6 @@
 //! Natural cubic spline through points in time: continuous second derivative.
+//!
+//! Source: docs/theory/motions.md, eq. (4).
 
 /// A natural cubic spline, constant outside its points.
 #[derive(Debug, Clone, PartialEq)]

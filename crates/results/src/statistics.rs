@@ -8,6 +8,7 @@ use crate::Extent;
 /// the length counts twice; minimum and maximum are over the samples. The update is the weighted
 /// form of Welford's: West (1979), "Updating mean and variance estimates: an improved method",
 /// Communications of the ACM 22(9), 532-535. NaN anywhere makes the mean of that value NaN.
+/// Source: docs/theory/results.md, eq. (9).
 #[derive(Debug, Clone)]
 pub struct WindowStatistics {
     /// Smallest sample of each value (n).

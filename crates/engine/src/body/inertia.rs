@@ -1,6 +1,6 @@
 //! Inertia of a rigid body whose tensors turn with it.
 //!
-//! Source: docs/theory/dem.md, eqs. (22) and (23).
+//! Source: docs/theory/dem.md, eqs. (23) and (24).
 
 use catenix_numerics::{Matrix3, Vector3, so3::hat};
 

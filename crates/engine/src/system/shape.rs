@@ -2,6 +2,8 @@
 //!
 //! Bodies without a given position sink (or rise) as far as their lines let them; each line then
 //! hangs between its ends as a circular arc of its own length, in the vertical plane of its ends.
+//!
+//! Source: docs/theory/statics.md, eqs. (7) and (8).
 
 use catenix_model::{EndConnection, Line, LineEnd, Model, SupportRef};
 use catenix_numerics::{Configuration, Matrix3, Vector3, so3};

@@ -1,4 +1,6 @@
 //! Element lengths of a section: equal, or graded towards its ends.
+//!
+//! Source: docs/theory/dem.md, eq. (30).
 
 use crate::file::diagnostic::DiagnosticCode as Code;
 use crate::file::log::Log;

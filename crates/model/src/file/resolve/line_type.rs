@@ -23,6 +23,7 @@ pub(super) fn resolve(
     }
 }
 
+/// Source: docs/theory/dem.md, eq. (29).
 fn pipe(table: &PipeTable, name: &str, log: &mut Log) -> Option<ResolvedLineType> {
     check_diameters(&table.outer_diameter, &table.inner_diameter, log)?;
     let poisson = table.poisson_ratio.si;
