@@ -6,7 +6,10 @@
 //!
 //! Source: docs/theory/statics.md, eqs. (5) and (6).
 
-use catenix_numerics::{ImplicitSystem, MotionState, TangentWeights, Vector3, Vector6};
+use catenix_numerics::{
+    ImplicitSystem, Matrix3, MotionState, TangentWeights, Vector3, Vector6, so3,
+};
+use nalgebra::Matrix6;
 
 use crate::system::{System, SystemSolver};
 
@@ -14,6 +17,8 @@ use crate::system::{System, SystemSolver};
 const FREE: f64 = 1e-9;
 /// Squared frequency that spins are given [rad2/s2].
 const SPIN: f64 = 1e-6;
+/// Share of the squared motion that may be left unexplained by a rigid motion.
+const RIGID: f64 = 1e-4;
 /// Rounds of inverse iteration; each separates a free motion from the next by many decades.
 const ROUNDS: usize = 4;
 
@@ -24,8 +29,10 @@ pub(super) struct FreeMotion {
     pub frame: usize,
     /// Direction in which it moves.
     motion: Vector3,
-    /// Whether the moving parts are weightless in water: then no joint is to blame.
-    pub without_load: bool,
+    /// Whether the moving parts are weightless in water.
+    weightless: bool,
+    /// Whether they move as one rigid body.
+    rigid: bool,
 }
 
 impl FreeMotion {
@@ -42,10 +49,16 @@ impl FreeMotion {
         }
     }
 
+    /// Whether a joint leaves a rigid motion free, rather than the water or the weights leaving a
+    /// soft one.
+    pub(super) fn blames_a_joint(&self) -> bool {
+        self.rigid && !self.weightless
+    }
+
     pub(super) fn warning(&self, system: &System) -> String {
         format!(
-            "the equilibrium is one of many: {} is weightless in water and can move without \
-             resistance{}; its static position follows from the first shape",
+            "the equilibrium is one of many: {} can move without resistance{}, since neither weight \
+             nor water bring it back; its static position follows from the first shape",
             system.owner(self.frame),
             self.direction()
         )
@@ -80,7 +93,7 @@ pub(super) fn find(solver: &mut SystemSolver<'_>, state: &mut MotionState) -> Op
         };
         solver.begin();
         solver.assemble(0.0, state, Some(&weights), &mut residual);
-        solver.hold_spins(state, SPIN);
+        solver.hold_spins(state, SPIN, 0.0);
         let norm = dot(&mode, &forces).sqrt();
         let load: Vec<Vector6> = forces.iter().map(|f| -f / norm).collect();
         if solver.solve(&load, &mut mode).is_err() {
@@ -105,16 +118,44 @@ pub(super) fn find(solver: &mut SystemSolver<'_>, state: &mut MotionState) -> Op
         .enumerate()
         .max_by(|a, b| a.1.norm().total_cmp(&b.1.norm()))?;
     let largest = motion.norm();
-    let without_load = mode
-        .iter()
-        .enumerate()
-        .filter(|(_, d)| d.fixed_rows::<3>(0).norm() > 0.01 * largest)
-        .all(|(k, _)| solver.system().is_weightless(k));
+    let moving: Vec<usize> = (0..n)
+        .filter(|&k| mode[k].fixed_rows::<3>(0).norm() > 0.01 * largest)
+        .collect();
+    let weightless = moving.iter().all(|&k| solver.system().is_weightless(k));
+    let rigid = moves_rigidly(&mode, &moving, state);
     Some(FreeMotion {
         frame,
         motion,
-        without_load,
+        weightless,
+        rigid,
     })
+}
+
+/// Whether the translations of the moving frames are those of one rigid body, by least squares.
+fn moves_rigidly(mode: &[Vector6], moving: &[usize], state: &MotionState) -> bool {
+    let position = |k: usize| state.configuration.position[k];
+    let centre = moving.iter().map(|&k| position(k)).sum::<Vector3>() / moving.len() as f64;
+    let mut normal = Matrix6::zeros();
+    let mut right = Vector6::zeros();
+    let mut total = 0.0;
+    for &k in moving {
+        let mut map = nalgebra::Matrix3x6::<f64>::zeros();
+        map.fixed_columns_mut::<3>(0)
+            .copy_from(&Matrix3::identity());
+        map.fixed_columns_mut::<3>(3)
+            .copy_from(&-so3::hat(&(position(k) - centre)));
+        let translation: Vector3 = mode[k].fixed_rows::<3>(0).into();
+        normal += map.transpose() * map;
+        right += map.transpose() * translation;
+        total += translation.norm_squared();
+    }
+    // A straight line of frames leaves the rotation about itself open: pseudo-inverse.
+    let scale = normal.diagonal().max();
+    let Ok(solution) = normal.svd(true, true).solve(&right, 1e-10 * scale) else {
+        return false;
+    };
+    let unexplained = total - solution.dot(&right);
+    unexplained < RIGID * total
 }
 
 /// Mass matrix times `acceleration`.

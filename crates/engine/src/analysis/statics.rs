@@ -9,11 +9,13 @@
 use std::ops::ControlFlow;
 
 use catenix_numerics::{
-    Configuration, ImplicitSystem, Matrix3, MotionState, ResidualSize, TangentWeights, Vector6, so3,
+    Configuration, ImplicitSystem, Matrix3, MotionState, ResidualSize, TangentWeights, Vector3,
+    Vector6, so3,
 };
 use thiserror::Error;
 
 use super::free_motion;
+use crate::element::dem::pair::six;
 use crate::system::{FrameOwner, StepView, System, SystemSolver};
 
 /// Newton iterations of one pseudo-step before it is cut.
@@ -24,13 +26,18 @@ const SHORTENED_ITERATIONS: usize = 3;
 const ROTATION_LIMIT: f64 = 0.4;
 /// Residual at which an intermediate pseudo-step is good enough, over the reference force.
 const STEP_TOLERANCE: f64 = 1e-5;
+/// Growth, per converged step, of the largest step that is tried after a failure.
+const LIMIT_GROWTH: f64 = 1.25;
 /// Pseudo-step beyond which the inertia term no longer matters [s].
 const LARGEST_STEP: f64 = 1e4;
 /// Squared frequency of the touch of stiffness that keeps free spins out of the matrix
 /// [rad2/s2]; it acts on the search only, never on the residual.
 const SPIN_HOLD: f64 = 1e-3;
+/// The same in proportion to the largest residual moment [1/rad]: a spin that nothing holds must
+/// not answer to moments that are there only until the iteration has converged.
+const SPIN_MOMENT: f64 = 1.0;
 /// Pseudo-step below which the search is hopeless [s].
-const SMALLEST_STEP: f64 = 1e-4;
+const SMALLEST_STEP: f64 = 1e-7;
 
 /// How far the search for equilibrium is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -139,7 +146,7 @@ pub fn solve_statics<'a>(
     } = search;
     let mut warnings = Vec::new();
     match free_motion::find(&mut solver, &mut state) {
-        Some(free) if free.without_load => warnings.push(free.warning(system)),
+        Some(free) if !free.blames_a_joint() => warnings.push(free.warning(system)),
         Some(free) => {
             return Err(StaticsError::FreeMotion {
                 owner: system.owner(free.frame),
@@ -174,7 +181,13 @@ struct Search<'s, 'a> {
 
 /// How a pseudo-step ended.
 enum StepEnd {
-    Converged { iterations: usize },
+    Converged {
+        iterations: usize,
+    },
+    /// Still on its way; the residual it started from [N].
+    OutOfIterations {
+        start_residual: f64,
+    },
     Failed,
 }
 
@@ -205,27 +218,36 @@ impl<'s, 'a> Search<'s, 'a> {
     fn run(&mut self, allowed: f64, max_iterations: usize) -> Result<(), StaticsError> {
         let system = self.solver.system();
         let gravity = system.model().environment.gravity.max(0.1);
-        let coarse = allowed.max(STEP_TOLERANCE * system.reference_force());
         let mut tau = 0.1 * (system.reference_length() / gravity).sqrt();
+        let coarse = STEP_TOLERANCE * system.reference_force();
+        let mut tolerance = coarse.max(allowed);
+        // Steps near the last one that failed are approached slowly.
+        let mut limit = LARGEST_STEP;
         loop {
-            match self.pseudo_step(tau, coarse)? {
+            let end = self.pseudo_step(tau, tolerance)?;
+            let step_residual = self.residual.newtons;
+            self.static_residual();
+            if self.residual.newtons <= allowed {
+                return Ok(());
+            }
+            match end {
                 StepEnd::Converged { iterations } => {
-                    self.static_residual();
-                    if self.residual.newtons <= allowed {
-                        return Ok(());
-                    }
                     let growth = match iterations {
                         0..=3 => 2.5,
                         4..=5 => 1.6,
                         _ => 1.2,
                     };
-                    tau = (tau * growth).min(LARGEST_STEP);
-                    if tau == LARGEST_STEP && self.polish(allowed)? {
-                        return Ok(());
-                    }
+                    tau = (tau * growth).min(limit);
+                    limit = (limit * LIMIT_GROWTH).min(LARGEST_STEP);
+                    // Each step must have something left to do.
+                    tolerance = (0.1 * self.residual.newtons).clamp(allowed, coarse.max(allowed));
                 }
-                StepEnd::Failed => {
+                // A step on its way is continued; one that got lost is repeated, smaller.
+                StepEnd::OutOfIterations { start_residual }
+                    if step_residual < 0.1 * start_residual => {}
+                StepEnd::OutOfIterations { .. } | StepEnd::Failed => {
                     self.state.configuration.copy_from(&self.start);
+                    limit = 0.7 * tau;
                     tau *= 0.4;
                 }
             }
@@ -239,19 +261,6 @@ impl<'s, 'a> Search<'s, 'a> {
                 });
             }
         }
-    }
-
-    /// Full Newton steps to the last digit; whether they got there.
-    fn polish(&mut self, allowed: f64) -> Result<bool, StaticsError> {
-        let done = matches!(
-            self.pseudo_step(LARGEST_STEP, allowed)?,
-            StepEnd::Converged { .. }
-        );
-        if !done {
-            self.state.configuration.copy_from(&self.start);
-        }
-        self.static_residual();
-        Ok(self.residual.newtons <= allowed)
     }
 
     /// Residual without the pseudo-inertia.
@@ -270,6 +279,7 @@ impl<'s, 'a> Search<'s, 'a> {
         self.solver.begin();
         let mass = 1.0 / (tau * tau);
         let mut shortened = 0;
+        let mut start_residual = f64::INFINITY;
         for iteration in 0..=STEP_ITERATIONS {
             for k in 0..self.travel.len() {
                 self.state.acceleration[k] = self.travel[k] * mass;
@@ -284,6 +294,9 @@ impl<'s, 'a> Search<'s, 'a> {
             self.solver
                 .assemble(0.0, &self.state, Some(&weights), &mut self.residual_vector);
             self.residual = self.solver.residual_size(&self.residual_vector);
+            if iteration == 0 {
+                start_residual = self.residual.newtons;
+            }
             if !self.residual.newtons.is_finite() {
                 return Ok(StepEnd::Failed);
             }
@@ -292,18 +305,20 @@ impl<'s, 'a> Search<'s, 'a> {
                     iterations: iteration,
                 });
             }
-            self.solver.hold_spins(&self.state, SPIN_HOLD);
-            if iteration == STEP_ITERATIONS
-                || self
-                    .solver
-                    .solve(&self.residual_vector, &mut self.increment)
-                    .is_err()
+            if iteration == STEP_ITERATIONS {
+                return Ok(StepEnd::OutOfIterations { start_residual });
+            }
+            let moment = SPIN_MOMENT * largest_norm(&self.residual_vector, 3);
+            self.solver.hold_spins(&self.state, SPIN_HOLD, moment);
+            if self
+                .solver
+                .solve(&self.residual_vector, &mut self.increment)
+                .is_err()
             {
-                break;
+                return Ok(StepEnd::Failed);
             }
             self.iterations += 1;
             let (largest_move_m, complete) = self.advance();
-            shortened += usize::from(!complete);
             let progress = StaticsProgress {
                 iteration: self.iterations,
                 residual_n: self.residual.newtons,
@@ -314,6 +329,7 @@ impl<'s, 'a> Search<'s, 'a> {
                     iterations: self.iterations,
                 });
             }
+            shortened += usize::from(!complete);
             if shortened > SHORTENED_ITERATIONS {
                 break;
             }
@@ -324,36 +340,39 @@ impl<'s, 'a> Search<'s, 'a> {
     /// Applies the increment, shortened where it turns too far; returns the largest move
     /// and whether it was applied in full.
     fn advance(&mut self) -> (f64, bool) {
-        let largest = |part: usize| {
-            self.increment
-                .iter()
-                .map(|d| d.fixed_rows::<3>(part).norm())
-                .fold(0.0, f64::max)
-        };
-        let turn = largest(3);
+        let turn = largest_norm(&self.increment, 3);
         let shorten = if turn > ROTATION_LIMIT {
             ROTATION_LIMIT / turn
         } else {
             1.0
         };
-        let moved = largest(0) * shorten;
+        let moved = largest_norm(&self.increment, 0) * shorten;
         for increment in &mut self.increment {
             *increment *= shorten;
         }
         self.solver.moving(&self.increment);
         for k in 0..self.travel.len() {
             let d = &self.increment[k];
-            let turn = self.weights[k] * d.fixed_rows::<3>(3);
-            for row in 0..3 {
-                self.travel[k][row] += d[row];
-                self.travel[k][row + 3] += turn[row];
-            }
-            let travel = &self.travel[k];
-            self.state.configuration.position[k] =
-                self.start.position[k] + travel.fixed_rows::<3>(0);
-            self.state.configuration.rotation[k] =
-                so3::exp(&travel.fixed_rows::<3>(3).into_owned()) * self.start.rotation[k];
+            let turn: Vector3 = d.fixed_rows::<3>(3).into();
+            let position = &mut self.state.configuration.position[k];
+            *position += d.fixed_rows::<3>(0);
+            let rotation = &mut self.state.configuration.rotation[k];
+            // The spin first and the swing after it, so that a large spin leaves the axis alone.
+            let axis = *rotation * self.solver.system().frame_axis(k);
+            let spin = axis * axis.dot(&turn);
+            *rotation = so3::exp(&(turn - spin)) * so3::exp(&spin) * *rotation;
+            let way = so3::log(&(*rotation * self.start.rotation[k].transpose()));
+            let distance = *position - self.start.position[k];
+            self.travel[k] = six(&distance, &way);
         }
         (moved, shorten == 1.0)
     }
+}
+
+/// Largest norm of the translations (`part` 0) or rotations (`part` 3).
+fn largest_norm(vectors: &[Vector6], part: usize) -> f64 {
+    vectors
+        .iter()
+        .map(|d| d.fixed_rows::<3>(part).norm())
+        .fold(0.0, f64::max)
 }

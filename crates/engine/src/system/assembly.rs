@@ -7,7 +7,7 @@ use catenix_numerics::{
 use super::frames::{self, FrameMotion, FrameWeights, Sea};
 use super::{Carrier, Connector, ConnectorLaw, Mount, Place, System};
 use crate::body::motion::RigidMotion;
-use crate::element::dem::connector::{ConnectorState, Stress};
+use crate::element::dem::connector::{ConnectorState, Prediction};
 use crate::element::dem::joint::JointState;
 use crate::element::dem::pair::{PairForces, PairTangent, RateWeights, Sensitivity, Side};
 
@@ -52,10 +52,11 @@ impl EvaluatedPair {
         }
     }
 
-    pub(super) fn energy(&self) -> f64 {
-        match &self.state {
-            PairState::Beam(state) => state.energy(),
-            PairState::Joint(state) => state.energy(),
+    pub(super) fn energy(&self, law: &ConnectorLaw) -> f64 {
+        match (&self.state, law) {
+            (PairState::Beam(state), ConnectorLaw::Beam(law)) => state.energy(law),
+            (PairState::Joint(state), _) => state.energy(),
+            _ => unreachable!("a state is made by its own law"),
         }
     }
 
@@ -66,39 +67,26 @@ impl EvaluatedPair {
         }
     }
 
-    /// Axes in which the mixed stress is kept between iterations.
-    fn stress_axes(&self) -> Matrix3 {
-        match &self.state {
-            PairState::Beam(state) => state.middle,
-            PairState::Joint(_) => self.second.rotation,
-        }
-    }
-
-    fn elastic(&self) -> Stress {
-        match &self.state {
-            PairState::Beam(state) => state.elastic,
-            PairState::Joint(state) => Stress {
-                force: state.elastic,
-                moment: Vector3::zeros(),
-            },
-        }
-    }
-
-    fn tangent(&self, law: &ConnectorLaw, stress: &Stress, rates: &RateWeights) -> PairTangent {
+    fn tangent(
+        &self,
+        law: &ConnectorLaw,
+        prediction: Option<&Prediction>,
+        rates: &RateWeights,
+    ) -> PairTangent {
         let (first, second) = (&self.first, &self.second);
         match (&self.state, law) {
             (PairState::Beam(state), ConnectorLaw::Beam(law)) => {
-                state.tangent(law, first, second, stress, rates)
+                state.tangent(law, first, second, prediction, rates)
             }
             (PairState::Joint(state), ConnectorLaw::Joint(law)) => {
-                state.tangent(law, first, second, stress, rates)
+                state.tangent(law, first, second, prediction, rates)
             }
             _ => unreachable!("a state is made by its own law"),
         }
     }
 
-    /// Stress predicted by a linear solution, in [`Self::stress_axes`].
-    pub(super) fn predicted_stress(&self, connector: &Connector, increment: &[Vector6]) -> Stress {
+    /// Mixed unknowns after a linear solution.
+    pub(super) fn predicted(&self, connector: &Connector, increment: &[Vector6]) -> Prediction {
         let split = |mount: &Mount| match mount.carrier {
             Carrier::Free(k) => (
                 increment[k].fixed_rows::<3>(0).into_owned(),
@@ -108,14 +96,9 @@ impl EvaluatedPair {
         };
         let (a, b) = (split(&connector.first), split(&connector.second));
         let (a, b) = ((&a.0, &a.1), (&b.0, &b.1));
-        match (&self.state, &connector.law) {
-            (PairState::Beam(state), ConnectorLaw::Beam(law)) => {
-                state.predicted_stress(law, &self.first, &self.second, a, b)
-            }
-            (PairState::Joint(state), ConnectorLaw::Joint(law)) => {
-                state.predicted_stress(law, &self.first, &self.second, a, b)
-            }
-            _ => unreachable!("a state is made by its own law"),
+        match &self.state {
+            PairState::Beam(state) => state.predicted(&self.first, &self.second, a, b),
+            PairState::Joint(state) => state.predicted(&self.first, &self.second, a, b),
         }
     }
 }
@@ -160,15 +143,6 @@ pub(super) fn frame_motion(state: &MotionState, k: usize) -> FrameMotion {
     }
 }
 
-/// Stress to use in the geometric part of each connector's tangent.
-#[derive(Clone, Copy)]
-pub(super) enum GeometricStress<'a> {
-    /// The elastic stress: the exact tangent.
-    Elastic,
-    /// Predicted by the last linear solution, in the connectors' own axes.
-    Predicted(&'a [Stress]),
-}
-
 /// Evaluates everything at `state`: residual, connectors and, with `weights`, the matrix.
 #[expect(
     clippy::too_many_arguments,
@@ -180,7 +154,7 @@ pub(super) fn assemble(
     vessels: &[RigidMotion],
     state: &MotionState,
     weights: Option<&TangentWeights<'_>>,
-    geometric: GeometricStress<'_>,
+    predictions: Option<&[Prediction]>,
     pairs: &mut [EvaluatedPair],
     residual: &mut [Vector6],
     matrix: &mut BlockMatrix,
@@ -236,16 +210,6 @@ pub(super) fn assemble(
             }
         }
         if let Some(weights) = weights {
-            let stress = match geometric {
-                GeometricStress::Elastic => pair.elastic(),
-                GeometricStress::Predicted(list) => {
-                    let axes = pair.stress_axes();
-                    Stress {
-                        force: axes * list[index].force,
-                        moment: axes * list[index].moment,
-                    }
-                }
-            };
             let side_turn = |mount: &Mount| match mount.carrier {
                 Carrier::Free(k) => turn(k),
                 Carrier::Vessel(_) => Matrix3::identity(),
@@ -254,7 +218,8 @@ pub(super) fn assemble(
                 velocity: weights.velocity,
                 rotation: [side_turn(&connector.first), side_turn(&connector.second)],
             };
-            let tangent = pair.tangent(&connector.law, &stress, &rates);
+            let tangent =
+                pair.tangent(&connector.law, predictions.map(|list| &list[index]), &rates);
             scatter(system, connector, &tangent, matrix);
         }
         pairs[index] = pair;

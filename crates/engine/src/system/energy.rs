@@ -73,7 +73,7 @@ impl SystemSolver<'_> {
             ));
         }
         for (pair, connector) in self.pairs.iter().zip(&self.system.connectors) {
-            terms.elastic += pair.energy();
+            terms.elastic += pair.energy(&connector.law);
             terms.structural_damping += pair.damping_power();
             let forces = pair.forces();
             for (mount, force) in [

@@ -20,7 +20,6 @@ use thiserror::Error;
 
 use crate::body::lump::Lump;
 use crate::body::motion::{PrescribedMotion, RigidMotion};
-use crate::element::dem::connector::Stress;
 use crate::element::dem::joint::JointStiffness;
 use crate::element::dem::stiffness::ConnectorStiffness;
 use crate::hydro::current::CurrentField;
@@ -279,6 +278,11 @@ impl System {
         FrameOwner::Body(self.model.bodies[frame - self.body_frame(0)].name.clone())
     }
 
+    /// Axis of a frame in its own axes: along the line, or a body's z.
+    pub(crate) fn frame_axis(&self, frame: usize) -> Vector3 {
+        self.frames[frame].axis
+    }
+
     /// Whether a frame weighs nothing in water, lumps included.
     pub(crate) fn is_weightless(&self, frame: usize) -> bool {
         let own = &self.frames[frame];
@@ -328,6 +332,3 @@ impl System {
         }
     }
 }
-
-/// Stress that the mixed Newton method predicts for a connector, in its own axes.
-pub(crate) type PredictedStress = Stress;

@@ -5,7 +5,7 @@
 //!
 //! Source: docs/theory/statics.md, eqs. (7) and (8).
 
-use catenix_model::{EndConnection, Line, LineEnd, Model, SupportRef};
+use catenix_model::{EndConnection, Joint, Line, LineEnd, Model, SupportRef};
 use catenix_numerics::{Configuration, Matrix3, Vector3, so3};
 
 use super::{Carrier, LineLayout};
@@ -247,12 +247,17 @@ fn line_points(
         Vector3::z()
     };
     let ends = [supports.point(&line.ends[0]), supports.point(&line.ends[1])];
+    let away = |end: usize, start: &Vector3| {
+        loose_direction(&line.ends[end], end, start, length, &down, supports) * length
+    };
     let (a, b) = match ends {
         [Some(a), Some(b)] => (a, b),
-        [Some(a), None] => (a, a + down * length),
-        [None, Some(b)] => (b + down * length, b),
+        [Some(a), None] => (a, a + away(0, &a)),
+        [None, Some(b)] => (b + away(1, &b), b),
         [None, None] => (Vector3::zeros(), down * length),
     };
+    // Lines start under water, where the water carries them.
+    let ceiling = a.z.max(b.z).max(0.0);
     let floor = model
         .environment
         .seabed
@@ -262,12 +267,38 @@ fn line_points(
         .iter()
         .map(|s| {
             let mut point = arc(&a, &b, length, &down, s / length);
+            point.z = point.z.min(ceiling);
             if let Some(floor) = floor {
                 point.z = point.z.max(floor);
             }
             point
         })
         .collect()
+}
+
+/// Where a line with one loose end leads from the end that is held: in the direction in which a
+/// fixed joint holds it, or down (a heavy line), up (a light one under deep enough water), or
+/// along the surface.
+fn loose_direction(
+    held: &LineEnd,
+    end: usize,
+    start: &Vector3,
+    length: f64,
+    down: &Vector3,
+    supports: &Supports,
+) -> Vector3 {
+    if let LineEnd::Connected(connection) = held
+        && connection.joint == Joint::Fixed
+    {
+        let direction =
+            supports.get(connection.to).rotation * Vector3::from(connection.direction_local);
+        return if end == 0 { direction } else { -direction };
+    }
+    if start.z + length * down.z > 0.0 {
+        Vector3::x()
+    } else {
+        *down
+    }
 }
 
 /// Point at a share of a circular arc of `length` from `a` to `b` that sags towards `down`.

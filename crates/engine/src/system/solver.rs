@@ -5,10 +5,11 @@ use catenix_numerics::{
     Vector3, Vector6,
 };
 
-use super::assembly::{self, EvaluatedPair, GeometricStress};
+use super::System;
+use super::assembly::{self, EvaluatedPair};
 use super::frames::Sea;
-use super::{PredictedStress, System};
 use crate::body::motion::RigidMotion;
+use crate::element::dem::connector::Prediction;
 
 /// A system with the room that solving needs.
 #[derive(Debug, Clone)]
@@ -18,7 +19,7 @@ pub struct SystemSolver<'a> {
     current_acts: bool,
     pub(super) vessels: Vec<RigidMotion>,
     pub(super) pairs: Vec<EvaluatedPair>,
-    predicted: Vec<PredictedStress>,
+    predicted: Vec<Prediction>,
     has_prediction: bool,
     pub(super) matrix: BlockMatrix,
     factors: Factorisation,
@@ -40,7 +41,7 @@ impl<'a> SystemSolver<'a> {
             current_acts,
             vessels,
             pairs,
-            predicted: vec![PredictedStress::default(); system.connectors.len()],
+            predicted: vec![Prediction::default(); system.connectors.len()],
             has_prediction: false,
             matrix: BlockMatrix::zeros(&system.topology),
             factors: Factorisation::new(&system.topology),
@@ -58,20 +59,20 @@ impl<'a> SystemSolver<'a> {
         self.factorisations
     }
 
-    /// Adds a touch of stiffness, `frequency_squared` times the inertia, against the spin of
-    /// elements about their axes and the turning of bodies.
-    pub(crate) fn hold_spins(&mut self, state: &MotionState, frequency_squared: f64) {
+    /// Adds stiffness to the matrix, never to the residual, against the spin of elements about
+    /// their axes and the turning of bodies: `frequency_squared` times the inertia, plus `moment`
+    /// per radian [N m/rad].
+    pub(crate) fn hold_spins(&mut self, state: &MotionState, frequency_squared: f64, moment: f64) {
         let first_body = self.system.body_frame(0);
         for (k, frame) in self.system.frames.iter().enumerate() {
             let rotation = &state.configuration.rotation[k];
             let held = if k < first_body {
-                Vector3::new(frame.inertia.x, 0.0, 0.0)
+                Vector3::new(frame.inertia.x * frequency_squared + moment, 0.0, 0.0)
             } else {
-                frame.inertia + Vector3::repeat(frame.added_inertia)
+                (frame.inertia + Vector3::repeat(frame.added_inertia)) * frequency_squared
+                    + Vector3::repeat(moment)
             };
-            let stiffness = rotation
-                * Matrix3::from_diagonal(&(held * frequency_squared))
-                * rotation.transpose();
+            let stiffness = rotation * Matrix3::from_diagonal(&held) * rotation.transpose();
             self.matrix.diagonal[k].add_quadrant(1, 1, &stiffness);
         }
     }
@@ -110,18 +111,14 @@ impl ImplicitSystem for SystemSolver<'_> {
         for (motion, vessel) in self.vessels.iter_mut().zip(&self.system.vessels) {
             *motion = vessel.at(time);
         }
-        let geometric = if self.has_prediction {
-            GeometricStress::Predicted(&self.predicted)
-        } else {
-            GeometricStress::Elastic
-        };
+        let predictions = self.has_prediction.then_some(self.predicted.as_slice());
         assembly::assemble(
             self.system,
             &self.sea(time),
             &self.vessels,
             state,
             weights,
-            geometric,
+            predictions,
             &mut self.pairs,
             residual,
             &mut self.matrix,
@@ -142,13 +139,13 @@ impl ImplicitSystem for SystemSolver<'_> {
     }
 
     fn moving(&mut self, increment: &[Vector6]) {
-        for ((stress, pair), connector) in self
+        for ((prediction, pair), connector) in self
             .predicted
             .iter_mut()
             .zip(&self.pairs)
             .zip(&self.system.connectors)
         {
-            *stress = pair.predicted_stress(connector, increment);
+            *prediction = pair.predicted(connector, increment);
         }
         self.has_prediction = true;
     }

@@ -252,7 +252,7 @@ fn beam_node(pair: &EvaluatedPair, shift: f64) -> NodeResult {
     let PairState::Beam(state) = &pair.state else {
         return NodeResult::default();
     };
-    let axis: Vector3 = state.middle.column(0).into();
+    let axis = state.axis;
     let force = state.elastic.force + state.damping.force;
     let arm = axis * shift;
     let moment = state.elastic.moment + state.damping.moment + arm.cross(&force);

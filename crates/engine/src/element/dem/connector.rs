@@ -1,12 +1,17 @@
 //! The flexible connector between two rigid elements, or between an element and a clamp.
 //!
-//! Deformation is measured in the frame half-way between the two sides: the gap between the two
-//! connection points (extension and two shears) and the rotation vector from one side to the other
-//! (torsion and two bendings). Forces are the exact gradient of the stored energy, so that
-//! momentum and energy are kept for any rotation; the tangent is exact.
+//! Six deformations: the gap between the two connection points, along the mean of the two axes
+//! (extension) and across it (two shears); the angle between the axes (two bendings); and the twist
+//! between the sections, against parallel transport from one axis to the other (torsion). For a
+//! round section these need the axes and one direction fixed to each section, no rotation vector,
+//! and a spin of the elements meets torsion only.
+//!
+//! Forces are the exact gradient of the stored energy, so that momentum and energy are kept for any
+//! rotation; the tangent is exact.
 //!
 //! Source: docs/theory/dem.md, eqs. (1) to (12). Deviation from Li et al. 2011: rotations are
-//! finite (rotation vector), where the paper's six springs are written for small ones.
+//! finite, where the paper's six springs are written for small ones; the twist is that of
+//! Bergou et al. 2008 (discrete elastic rods).
 
 use catenix_numerics::{Matrix3, Vector3, so3};
 
@@ -19,8 +24,27 @@ use so3::hat;
 pub struct Stress {
     /// Force of the second side on the first [N].
     pub force: Vector3,
-    /// Moment, work-conjugate to the rotation vector [N m].
+    /// Moment of the second side on the first [N m].
     pub moment: Vector3,
+}
+
+/// What the mixed Newton method predicts of a connector: its gap after the linear solution, split
+/// into parts that survive a rotation of the pair.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Prediction {
+    /// Gap along the axis [m].
+    pub extension: f64,
+    /// Gap across the axis (3) [m].
+    pub across: Vector3,
+}
+
+impl Prediction {
+    /// The force that belongs to the prediction, about the axis of the new configuration.
+    #[inline]
+    pub(super) fn force(&self, stiffness: &ConnectorStiffness, axis: &Vector3) -> Vector3 {
+        let across = self.across - axis * axis.dot(&self.across);
+        axis * (stiffness.axial * self.extension) + across * stiffness.shear
+    }
 }
 
 /// A connector at one configuration: geometry, elastic stress and damping stress.
@@ -28,86 +52,96 @@ pub struct Stress {
 pub struct ConnectorState {
     /// From the first connection point to the second (3) [m].
     pub gap: Vector3,
-    /// Rotation vector from the first side's axes to the second's, global (3) [rad].
-    pub bend: Vector3,
-    /// Axes half-way between the sides; first column along the line.
-    pub middle: Matrix3,
+    /// Mean of the two axes, unit (3).
+    pub axis: Vector3,
+    /// Twist of the second section against the first [rad].
+    pub twist: f64,
     /// Elastic stress.
     pub elastic: Stress,
     /// Damping stress.
     pub damping: Stress,
-    /// Rate of the gap in the middle frame, global components (3) [m/s].
+    /// Axes of the two sides, unit.
+    axes: [Vector3; 2],
+    /// Length of the sum of the two axes, 2 cos(half the angle between them).
+    sum: f64,
+    /// (axial - shear stiffness) x extension: the stretching force beyond the shear stiffness [N].
+    stretch: f64,
+    /// Gap across the mean axis (3) [m].
+    across: Vector3,
+    /// Rate of the gap, less its turning with the mean spin (3) [m/s].
     gap_rate: Vector3,
     /// Difference of the angular velocities (3) [rad/s].
     bend_rate: Vector3,
 }
 
-/// Coefficients of the half-angle maps as functions of the squared angle, with derivatives.
-struct HalfAngle {
-    /// h / sin h with h half the angle.
-    alpha: f64,
-    /// (1 - alpha) / angle^2.
-    beta: f64,
-    /// tan(h/2) / h.
-    k: f64,
-    alpha_s: f64,
-    beta_s: f64,
-    k_s: f64,
+/// Angle over its sine as a function of the cosine, with its derivative.
+#[inline]
+fn angle_over_sine(cos: f64) -> (f64, f64) {
+    let y = 1.0 - cos;
+    if y < 5e-3 {
+        let value = 1.0 + y * (1.0 / 3.0 + y * (2.0 / 15.0 + y * (2.0 / 35.0 + y * (8.0 / 315.0))));
+        let slope = 1.0 / 3.0
+            + y * (4.0 / 15.0 + y * (6.0 / 35.0 + y * (32.0 / 315.0 + y * (40.0 / 693.0))));
+        return (value, -slope);
+    }
+    let sin2 = (1.0 - cos * cos).max(1e-12);
+    let value = cos.clamp(-1.0, 1.0).acos() / sin2.sqrt();
+    (value, (cos * value - 1.0) / sin2)
 }
 
-impl HalfAngle {
-    fn new(s: f64) -> HalfAngle {
-        if s < 0.02 {
-            return HalfAngle {
-                alpha: 1.0 + s * (1.0 / 24.0 + s * (7.0 / 5760.0 + s * (31.0 / 967680.0))),
-                beta: -1.0 / 24.0
-                    - s * (7.0 / 5760.0 + s * (31.0 / 967680.0 + s * (127.0 / 154828800.0))),
-                k: 0.5 + s * (1.0 / 96.0 + s * (1.0 / 3840.0 + s * (17.0 / 2580480.0))),
-                alpha_s: 1.0 / 24.0 + s * (7.0 / 2880.0 + s * (31.0 / 322560.0)),
-                beta_s: -7.0 / 5760.0 - s * (31.0 / 483840.0 + s * (127.0 / 51609600.0)),
-                k_s: 1.0 / 96.0 + s * (1.0 / 1920.0 + s * (17.0 / 860160.0)),
-            };
-        }
-        let h = 0.5 * s.sqrt();
-        let (sin, cos) = h.sin_cos();
-        let alpha = h / sin;
-        let per_s = 1.0 / (8.0 * h);
-        let alpha_s = (sin - h * cos) / (sin * sin) * per_s;
-        let tan = (0.5 * h).tan();
-        HalfAngle {
-            alpha,
-            beta: (1.0 - alpha) / s,
-            k: tan / h,
-            alpha_s,
-            beta_s: (-alpha_s - (1.0 - alpha) / s) / s,
-            k_s: (0.5 * (1.0 + tan * tan) / h - tan / (h * h)) * per_s,
-        }
-    }
+/// Angle from the first section's direction, carried along to the second axis, to the second's.
+///
+/// Source: docs/theory/dem.md, eq. (3).
+#[inline]
+fn twist(first: &Side, second: &Side, cross: &Vector3, one_plus_cos: f64) -> f64 {
+    let start: Vector3 = first.rotation.column(1).into();
+    let end: Vector3 = second.rotation.column(1).into();
+    let axis: Vector3 = second.rotation.column(0).into();
+    let turned = cross.cross(&start);
+    let carried = start + turned + cross.cross(&turned) / one_plus_cos;
+    axis.dot(&carried.cross(&end)).atan2(carried.dot(&end))
 }
 
 impl ConnectorState {
     /// Measures the deformation between two sides and the stress that follows.
     ///
-    /// Source: docs/theory/dem.md, eqs. (1) to (4) and (9).
+    /// Source: docs/theory/dem.md, eqs. (1) to (5) and (9).
     #[inline]
     pub fn new(stiffness: &ConnectorStiffness, first: &Side, second: &Side) -> ConnectorState {
-        let bend = so3::log(&(second.rotation * first.rotation.transpose()));
-        let middle = so3::exp(&(bend * 0.5)) * first.rotation;
-        let axis: Vector3 = middle.column(0).into();
+        let a: Vector3 = first.rotation.column(0).into();
+        let b: Vector3 = second.rotation.column(0).into();
+        let total = a + b;
+        // Opposite axes have no mean; such a state is lost, and the step is cut.
+        let sum = total.norm().max(1e-6);
+        let axis = total / sum;
+        let one_plus_cos = 0.5 * sum * sum;
         let gap = second.point - first.point;
+        let extension = axis.dot(&gap);
+        let stretch = (stiffness.axial - stiffness.shear) * extension;
+        let cross = a.cross(&b);
+        let twist = if stiffness.torsion > 0.0 {
+            twist(first, second, &cross, one_plus_cos)
+        } else {
+            0.0
+        };
+        let (ratio, _) = angle_over_sine(one_plus_cos - 1.0);
         let mean_spin = (first.spin + second.spin) * 0.5;
         let gap_rate = second.velocity - first.velocity - mean_spin.cross(&gap);
         let bend_rate = second.spin - first.spin;
         ConnectorState {
             gap,
-            bend,
-            middle,
-            elastic: stiffness.stress(&axis, &gap, &bend),
-            damping: stiffness.stress(
-                &axis,
-                &(gap_rate * stiffness.damping),
-                &(bend_rate * stiffness.damping),
-            ),
+            axis,
+            twist,
+            elastic: Stress {
+                force: gap * stiffness.shear + axis * stretch,
+                moment: cross * (stiffness.bending * ratio)
+                    + total * (stiffness.torsion * twist / one_plus_cos),
+            },
+            damping: stiffness.damping_stress(&axis, &gap_rate, &bend_rate),
+            axes: [a, b],
+            sum,
+            stretch,
+            across: gap - axis * extension,
             gap_rate,
             bend_rate,
         }
@@ -115,96 +149,104 @@ impl ConnectorState {
 
     /// Generalised forces on the two frames.
     ///
-    /// Source: docs/theory/dem.md, eqs. (5) to (7) and (10).
+    /// Source: docs/theory/dem.md, eqs. (6) and (10).
     #[inline]
     pub fn forces(&self, first: &Side, second: &Side) -> PairForces {
-        let half = HalfAngle::new(self.bend.norm_squared());
-        let couple = self.gap.cross(&self.elastic.force);
-        let skew = couple.cross(&self.bend) * (0.25 * half.k);
-        let moment = self.conjugate_moment(&half, &self.elastic.moment);
         let force = self.elastic.force + self.damping.force;
-        let shared = (couple + self.gap.cross(&self.damping.force)) * -0.5;
-        let opposed = skew + moment + self.damping.moment;
+        let moment = self.elastic.moment + self.damping.moment;
+        let turning = self.across * (self.stretch / self.sum);
+        let shared = self.gap.cross(&self.damping.force) * -0.5;
         PairForces::new(
             &force,
-            &(shared - first.lever.cross(&force) - opposed),
-            &(shared + second.lever.cross(&force) + opposed),
+            &(self.axes[0].cross(&turning) + shared - first.lever.cross(&force) - moment),
+            &(self.axes[1].cross(&turning) + shared + second.lever.cross(&force) + moment),
         )
     }
 
-    /// S^-1 times the moment: what is conjugate to the difference of rotation increments.
-    fn conjugate_moment(&self, half: &HalfAngle, moment: &Vector3) -> Vector3 {
-        moment * half.alpha + self.bend * (half.beta * self.bend.dot(moment))
-    }
-
-    /// Exact derivative of [`Self::forces`]. `stress` takes the place of the elastic stress in the
-    /// geometric part: the elastic stress itself for the exact tangent, or the stress predicted by
-    /// the last linear solution (the mixed form).
+    /// Exact derivative of [`Self::forces`]. With a `prediction`, its stress takes the place of the
+    /// elastic stress in the geometric part (the mixed form).
     ///
-    /// Source: docs/theory/dem.md, eqs. (8), (11) and (12).
+    /// Source: docs/theory/dem.md, eqs. (7), (8), (11) and (12).
     pub fn tangent(
         &self,
         stiffness: &ConnectorStiffness,
         first: &Side,
         second: &Side,
-        stress: &Stress,
+        prediction: Option<&Prediction>,
         rates: &RateWeights,
     ) -> PairTangent {
-        let half = HalfAngle::new(self.bend.norm_squared());
-        let axis: Vector3 = self.middle.column(0).into();
-        let k = stiffness.matrices(&axis);
-        let gap_hat = hat(&self.gap);
-        let bend_hat = hat(&self.bend);
-        let map = Matrix3::identity() * half.alpha + self.bend * self.bend.transpose() * half.beta;
-        let quarter = 0.25 * half.k;
-        let middle_by = Sensitivity {
-            translation: Matrix3::zeros(),
-            first_rotation: Matrix3::identity() * 0.5 + bend_hat * quarter,
-            second_rotation: Matrix3::identity() * 0.5 - bend_hat * quarter,
+        let [a, b] = &self.axes;
+        let m = &self.axis;
+        let inverse = 1.0 / self.sum;
+        let (axial, shear) = (stiffness.axial, stiffness.shear);
+        let extension = m.dot(&self.gap);
+        let across = &self.across;
+        // Tension and shear force of the geometric part.
+        let force_vector = match prediction {
+            Some(prediction) => prediction.force(stiffness, m),
+            None => self.elastic.force,
         };
+        let tension = m.dot(&force_vector);
+        let shear_force = force_vector - m * tension;
+        let (a_hat, b_hat) = (hat(a), hat(b));
+        let outer = m * m.transpose();
+        let project = Matrix3::identity() - outer;
 
-        // Derivatives by gap (slot "translation") and by rotations at fixed gap.
-        let by_middle = k.force_gap * gap_hat - hat(&stress.force);
+        // By the gap, and by the sum of the axes.
+        let force_by_gap = Matrix3::identity() * shear + outer * (axial - shear);
+        let force_by_sum = (m * (across * axial - shear_force).transpose()
+            + project * (tension - shear * extension))
+            * inverse;
+        let turning = (across * tension - shear_force * extension) * inverse;
+        let turning_by_gap = force_by_sum.transpose();
+        let skewed = m * turning.transpose() * self.sum;
+        let turning_by_sum = ((across * axial - shear_force) * across.transpose()
+            + project * (extension * (shear * extension - tension))
+            - skewed
+            - skewed.transpose())
+            * (inverse * inverse);
+
+        // The moment of bending and torsion, by the two axes and by the difference of rotations.
+        let one_plus_cos = 0.5 * self.sum * self.sum;
+        let (ratio, slope) = angle_over_sine(one_plus_cos - 1.0);
+        let cross = a.cross(b);
+        let along_sum = m * self.sum;
+        let torque = stiffness.torsion * self.twist / one_plus_cos;
+        let by_cos = cross * (stiffness.bending * slope) - along_sum * (torque / one_plus_cos);
+        let bend = stiffness.bending * ratio;
+        let torsion = outer * (2.0 * stiffness.torsion / one_plus_cos);
+        let moment_by_first_axis =
+            by_cos * b.transpose() - b_hat * bend + Matrix3::identity() * torque;
+        let moment_by_second_axis =
+            by_cos * a.transpose() + a_hat * bend + Matrix3::identity() * torque;
+
         let force = Sensitivity {
-            translation: k.force_gap,
-            first_rotation: by_middle * middle_by.first_rotation,
-            second_rotation: by_middle * middle_by.second_rotation,
+            translation: force_by_gap,
+            first_rotation: -(force_by_sum * a_hat),
+            second_rotation: -(force_by_sum * b_hat),
         };
-        let conjugate = self.conjugate_moment(&half, &stress.moment);
-        let moment_by_middle = -hat(&conjugate);
-        let bend_dot_moment = self.bend.dot(&stress.moment);
-        let bend_outer = self.bend * self.bend.transpose();
-        let stretch = stress.moment * self.bend.transpose() * (2.0 * half.alpha_s)
-            + bend_outer * (2.0 * half.beta_s * bend_dot_moment)
-            + (Matrix3::identity() * bend_dot_moment + self.bend * stress.moment.transpose())
-                * half.beta;
-        let moment_bend = (map * k.moment_bend + stretch) * map;
+        let turn = Sensitivity {
+            translation: turning_by_gap,
+            first_rotation: -(turning_by_sum * a_hat),
+            second_rotation: -(turning_by_sum * b_hat),
+        };
         let moment = Sensitivity {
             translation: Matrix3::zeros(),
-            first_rotation: moment_by_middle * middle_by.first_rotation - moment_bend,
-            second_rotation: moment_by_middle * middle_by.second_rotation + moment_bend,
+            first_rotation: -(moment_by_first_axis * a_hat) - torsion,
+            second_rotation: -(moment_by_second_axis * b_hat) + torsion,
         };
-        let mut couple = force.led_by(&gap_hat);
-        couple.translation -= hat(&stress.force);
-        let couple_vector = self.gap.cross(&stress.force);
-        let couple_hat = hat(&couple_vector);
-        let mut skew = couple.led_by(&(bend_hat * -quarter));
-        let by_angle = couple_vector.cross(&self.bend) * self.bend.transpose() * (0.5 * half.k_s);
-        let bend_by_difference = couple_hat * map * quarter + by_angle;
-        let bend_by_middle = couple_hat * bend_hat * -quarter;
-        skew.first_rotation += bend_by_middle * middle_by.first_rotation - bend_by_difference;
-        skew.second_rotation += bend_by_middle * middle_by.second_rotation + bend_by_difference;
-
         let lever = [hat(&first.lever), hat(&second.lever)];
-        let shared = couple.scaled(-0.5);
-        let opposed = skew.plus(&moment);
-        let mut first_moment = shared
+        let mut first_moment = turn
+            .led_by(&a_hat)
             .plus(&force.led_by(&-lever[0]))
-            .plus(&opposed.scaled(-1.0));
-        let mut second_moment = shared.plus(&force.led_by(&lever[1])).plus(&opposed);
-        let force_hat = hat(&stress.force);
-        first_moment.first_rotation -= force_hat * lever[0];
-        second_moment.second_rotation += force_hat * lever[1];
+            .plus(&moment.scaled(-1.0));
+        let mut second_moment = turn
+            .led_by(&b_hat)
+            .plus(&force.led_by(&lever[1]))
+            .plus(&moment);
+        let (force_hat, turning_hat) = (hat(&force_vector), hat(&turning));
+        first_moment.first_rotation += turning_hat * a_hat - force_hat * lever[0];
+        second_moment.second_rotation += turning_hat * b_hat + force_hat * lever[1];
         let close = |mut d: Sensitivity| {
             d.first_rotation += d.translation * lever[0];
             d.second_rotation -= d.translation * lever[1];
@@ -216,68 +258,64 @@ impl ConnectorState {
             second_moment: close(second_moment),
         };
         if stiffness.damping > 0.0 && rates.velocity > 0.0 {
-            self.add_damping(stiffness, first, second, &middle_by, rates, &mut tangent);
+            let axis_by_sum = project * inverse;
+            let axis_by = [-(axis_by_sum * a_hat), -(axis_by_sum * b_hat)];
+            self.add_damping(stiffness, first, second, &axis_by, rates, &mut tangent);
         }
         tangent
     }
 
+    /// Adds the derivatives of the damping stress. `axis_by`: of the mean axis by the rotations.
     fn add_damping(
         &self,
         stiffness: &ConnectorStiffness,
         first: &Side,
         second: &Side,
-        middle_by: &Sensitivity,
+        axis_by: &[Matrix3; 2],
         rates: &RateWeights,
         tangent: &mut PairTangent,
     ) {
         let tau = stiffness.damping;
-        let axis: Vector3 = self.middle.column(0).into();
-        let k = stiffness.matrices(&axis);
-        let (q, d) = (&self.gap_rate, &self.bend_rate);
+        let m = &self.axis;
+        let outer = m * m.transpose();
         let along = stiffness.axial - stiffness.shear;
         let twist = stiffness.torsion - stiffness.bending;
-        let axis_hat = hat(&axis);
-        let turn = |v: &Vector3, factor: f64| {
-            (Matrix3::identity() * axis.dot(v) + axis * v.transpose()) * factor
+        let by_rate = Matrix3::identity() * stiffness.shear + outer * along;
+        let by_bend = Matrix3::identity() * stiffness.bending + outer * twist;
+        let by_axis = |v: &Vector3, factor: f64| {
+            (Matrix3::identity() * m.dot(v) + m * v.transpose()) * factor
         };
-        let force_turn = turn(q, along) * axis_hat;
-        let moment_turn = turn(d, twist) * axis_hat;
+        let force_by_axis = by_axis(&self.gap_rate, along);
+        let moment_by_axis = by_axis(&self.bend_rate, twist);
 
         let lever = [hat(&first.lever), hat(&second.lever)];
         let gap_hat = hat(&self.gap);
         let mean_spin = (first.spin + second.spin) * 0.5;
-        let gap_by_first = lever[0];
-        let gap_by_second = -lever[1];
         let spin_hat = hat(&mean_spin);
-        // Rate of the gap, by configuration and through the velocities, increments of both frames.
+        // Rate of the gap by the increments: by configuration, and through the velocities.
         let v = rates.velocity;
-        let rate_first = hat(&first.spin) * lever[0] - spin_hat * gap_by_first
+        let rate_first = hat(&first.spin) * lever[0] - spin_hat * lever[0]
             + (lever[0] + gap_hat * 0.5) * rates.rotation[0] * v;
-        let rate_second = -hat(&second.spin) * lever[1] - spin_hat * gap_by_second
+        let rate_second = -hat(&second.spin) * lever[1]
+            + spin_hat * lever[1]
             + (gap_hat * 0.5 - lever[1]) * rates.rotation[1] * v;
         let rate_translation = Matrix3::identity() * v - spin_hat;
-        let spin_first = -rates.rotation[0] * v;
-        let spin_second = rates.rotation[1] * v;
         let force = Sensitivity {
-            translation: k.force_gap * rate_translation * tau,
-            first_rotation: (k.force_gap * rate_first - force_turn * middle_by.first_rotation)
-                * tau,
-            second_rotation: (k.force_gap * rate_second - force_turn * middle_by.second_rotation)
-                * tau,
+            translation: by_rate * rate_translation * tau,
+            first_rotation: (by_rate * rate_first + force_by_axis * axis_by[0]) * tau,
+            second_rotation: (by_rate * rate_second + force_by_axis * axis_by[1]) * tau,
         };
+        let spin = by_bend * (v * tau);
         let moment = Sensitivity {
             translation: Matrix3::zeros(),
-            first_rotation: (k.moment_bend * spin_first - moment_turn * middle_by.first_rotation)
-                * tau,
-            second_rotation: (k.moment_bend * spin_second
-                - moment_turn * middle_by.second_rotation)
-                * tau,
+            first_rotation: moment_by_axis * axis_by[0] * tau - spin * rates.rotation[0],
+            second_rotation: moment_by_axis * axis_by[1] * tau + spin * rates.rotation[1],
         };
         let force_hat = hat(&self.damping.force);
         let mut couple = force.led_by(&gap_hat);
         couple.translation -= force_hat;
-        couple.first_rotation -= force_hat * gap_by_first;
-        couple.second_rotation -= force_hat * gap_by_second;
+        couple.first_rotation -= force_hat * lever[0];
+        couple.second_rotation += force_hat * lever[1];
         let shared = couple.scaled(-0.5);
         let mut first_moment = shared
             .plus(&force.led_by(&-lever[0]))
@@ -290,38 +328,41 @@ impl ConnectorState {
         tangent.second_moment = tangent.second_moment.plus(&second_moment);
     }
 
-    /// Elastic stress after a small move, from the linear solution: the mixed force unknown.
-    /// Components in the connector's middle axes, so that they survive its rotation.
+    /// Gap after a small move, from the linear solution: the mixed unknowns.
     ///
     /// Source: docs/theory/solver.md, eq. (6); Magisano, Leonetti and Garcea 2017.
-    pub fn predicted_stress(
+    pub fn predicted(
         &self,
-        stiffness: &ConnectorStiffness,
         first: &Side,
         second: &Side,
         first_move: (&Vector3, &Vector3),
         second_move: (&Vector3, &Vector3),
-    ) -> Stress {
-        let half = HalfAngle::new(self.bend.norm_squared());
-        let axis: Vector3 = self.middle.column(0).into();
+    ) -> Prediction {
+        let [a, b] = &self.axes;
         let gap_move = second_move.0 - first_move.0 + second_move.1.cross(&second.lever)
             - first_move.1.cross(&first.lever);
-        let difference = second_move.1 - first_move.1;
-        let middle_move =
-            (first_move.1 + second_move.1) * 0.5 - self.bend.cross(&difference) * (0.25 * half.k);
-        let gap = self.gap + gap_move - middle_move.cross(&self.gap);
-        let bend = self.bend + self.conjugate_moment(&half, &difference);
-        let stress = stiffness.stress(&axis, &gap, &bend);
-        let back = self.middle.transpose();
-        Stress {
-            force: back * stress.force,
-            moment: back * stress.moment,
+        let m = &self.axis;
+        let sum_move = first_move.1.cross(a) + second_move.1.cross(b);
+        let axis_move = (sum_move - m * m.dot(&sum_move)) / self.sum;
+        let extension = m.dot(&self.gap);
+        let across_move = gap_move - m * m.dot(&gap_move) - axis_move * extension;
+        Prediction {
+            extension: extension + m.dot(&gap_move) + self.across.dot(&axis_move),
+            across: self.across + across_move,
         }
     }
 
     /// Elastic energy [J].
-    pub fn energy(&self) -> f64 {
-        0.5 * (self.elastic.force.dot(&self.gap) + self.elastic.moment.dot(&self.bend))
+    ///
+    /// Source: docs/theory/dem.md, eq. (5).
+    pub fn energy(&self, stiffness: &ConnectorStiffness) -> f64 {
+        let angle = self.axes[0]
+            .cross(&self.axes[1])
+            .norm()
+            .atan2(self.axes[0].dot(&self.axes[1]));
+        0.5 * (self.elastic.force.dot(&self.gap)
+            + stiffness.bending * angle * angle
+            + stiffness.torsion * self.twist * self.twist)
     }
 
     /// Power of the damping stress on the two frames, negative [W].

@@ -10,7 +10,7 @@
 
 use catenix_numerics::{Matrix3, Vector3, so3};
 
-use super::connector::Stress;
+use super::connector::Prediction;
 use super::pair::{PairForces, PairTangent, RateWeights, Sensitivity, Side};
 use super::stiffness::ConnectorStiffness;
 use so3::hat;
@@ -148,19 +148,20 @@ impl JointState {
         )
     }
 
-    /// Exact derivative of [`Self::forces`], with `stress` in place of the elastic force in the
-    /// geometric part, as in the connector.
+    /// Exact derivative of [`Self::forces`]. With a `prediction`, its force takes the place of the
+    /// elastic one in the geometric part, as in the connector.
     pub fn tangent(
         &self,
         joint: &JointStiffness,
         support: &Side,
         element: &Side,
-        stress: &Stress,
+        prediction: Option<&Prediction>,
         rates: &RateWeights,
     ) -> PairTangent {
         let axis: Vector3 = element.rotation.column(0).into();
         let half = &joint.half;
         let along = half.axial - half.shear;
+        let elastic = prediction.map_or(self.elastic, |p| p.force(half, &axis));
         let matrix = Matrix3::identity() * half.shear + axis * axis.transpose() * along;
         let lever = [hat(&support.lever), hat(&element.lever)];
         let gap_hat = hat(&self.gap);
@@ -172,9 +173,9 @@ impl JointState {
         };
         // Force of the joint on the support's side of the pair: K gap in the element's axes.
         let mut force = gap.led_by(&matrix);
-        force.second_rotation += matrix * gap_hat - hat(&stress.force);
+        force.second_rotation += matrix * gap_hat - hat(&elastic);
         let tau = half.damping;
-        let mut total = stress.force;
+        let mut total = elastic;
         if tau > 0.0 && rates.velocity > 0.0 {
             let v = rates.velocity;
             let q = &self.gap_rate;
@@ -242,23 +243,23 @@ impl JointState {
         moment
     }
 
-    /// Elastic force after a small move, in the element's axes (see the connector).
-    pub fn predicted_stress(
+    /// Gap after a small move, from the linear solution (see the connector).
+    pub fn predicted(
         &self,
-        joint: &JointStiffness,
         support: &Side,
         element: &Side,
         support_move: (&Vector3, &Vector3),
         element_move: (&Vector3, &Vector3),
-    ) -> Stress {
+    ) -> Prediction {
         let axis: Vector3 = element.rotation.column(0).into();
         let gap_move = support_move.0 - element_move.0 + support_move.1.cross(&support.lever)
             - element_move.1.cross(&element.lever);
+        // In the element's axes, so that its rotation changes nothing.
         let gap = self.gap + gap_move - element_move.1.cross(&self.gap);
-        let force = element.rotation.transpose() * axial(&joint.half, &axis, &gap);
-        Stress {
-            force,
-            moment: Vector3::zeros(),
+        let extension = axis.dot(&gap);
+        Prediction {
+            extension,
+            across: gap - axis * extension,
         }
     }
 

@@ -3,7 +3,7 @@
 //! Source: docs/theory/dem.md, eqs. (13) to (17).
 
 use catenix_model::LineType;
-use catenix_numerics::{Matrix3, Vector3};
+use catenix_numerics::Vector3;
 
 use super::connector::Stress;
 
@@ -27,12 +27,6 @@ pub struct ConnectorStiffness {
     pub shift: f64,
     /// Damping time: damping = this x stiffness [s].
     pub damping: f64,
-}
-
-/// The two 3 x 3 parts of the stiffness in global axes.
-pub(super) struct StiffnessMatrices {
-    pub force_gap: Matrix3,
-    pub moment_bend: Matrix3,
 }
 
 /// Half an element on one side of a connector.
@@ -124,25 +118,22 @@ impl ConnectorStiffness {
         }
     }
 
-    /// Stress for a gap and a bend, global components, with the axis of the middle frame.
+    /// Damping stress for the rates of gap and bend, with the mean axis of the connector.
     ///
-    /// Source: docs/theory/dem.md, eq. (4).
+    /// Source: docs/theory/dem.md, eq. (9).
     #[inline]
-    pub fn stress(&self, axis: &Vector3, gap: &Vector3, bend: &Vector3) -> Stress {
-        let extension = axis.dot(gap);
-        let twist = axis.dot(bend);
+    pub(super) fn damping_stress(
+        &self,
+        axis: &Vector3,
+        gap_rate: &Vector3,
+        bend_rate: &Vector3,
+    ) -> Stress {
+        let force = gap_rate * self.shear + axis * ((self.axial - self.shear) * axis.dot(gap_rate));
+        let moment =
+            bend_rate * self.bending + axis * ((self.torsion - self.bending) * axis.dot(bend_rate));
         Stress {
-            force: gap * self.shear + axis * ((self.axial - self.shear) * extension),
-            moment: bend * self.bending + axis * ((self.torsion - self.bending) * twist),
-        }
-    }
-
-    #[inline]
-    pub(super) fn matrices(&self, axis: &Vector3) -> StiffnessMatrices {
-        let outer = axis * axis.transpose();
-        StiffnessMatrices {
-            force_gap: Matrix3::identity() * self.shear + outer * (self.axial - self.shear),
-            moment_bend: Matrix3::identity() * self.bending + outer * (self.torsion - self.bending),
+            force: force * self.damping,
+            moment: moment * self.damping,
         }
     }
 }

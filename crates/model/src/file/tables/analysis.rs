@@ -13,7 +13,7 @@ table! {
         /// Largest residual force at any element, as a fraction of the system's reference force.
         tolerance: Positive<Dimensionless> = 1e-7,
         /// Most iterations before giving up.
-        max_iterations: Count = 2000,
+        max_iterations: Count = 10000,
     }
 }
 
