@@ -55,8 +55,8 @@ pub enum Motion {
         /// Time over which the amplitude is raised [s].
         ramp: f64,
     },
-    /// Motion given at points in time, joined by a natural cubic spline (continuous acceleration),
-    /// held constant before the first and after the last point.
+    /// Motion given at points in time, joined by a cubic spline (continuous acceleration) that
+    /// starts and ends at rest, held constant before the first and after the last point.
     History {
         /// Times, strictly increasing, at least two (n) [s].
         time: Vec<f64>,

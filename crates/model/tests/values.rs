@@ -80,7 +80,7 @@ fn defaults_are_the_documented_ones() {
     assert!(model.statics.current);
     assert_eq!(
         (model.statics.tolerance, model.statics.max_iterations),
-        (1e-7, 2000)
+        (1e-7, 10000)
     );
     let dynamics = model.dynamics.unwrap();
     assert_eq!(

@@ -1,29 +1,40 @@
-//! Natural cubic spline through points in time: continuous second derivative.
-//!
-//! Source: docs/theory/motions.md, eq. (4).
+//! Cubic spline through points in time, at rest at both ends: continuous second derivative inside,
+//! continuous first derivative everywhere.
 
-/// A natural cubic spline, constant outside its points.
+/// A cubic spline with zero slope at its ends, constant outside its points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spline {
     x: Vec<f64>,
     y: Vec<f64>,
+    /// Second derivative at each point.
     second: Vec<f64>,
 }
 
 impl Spline {
     /// `x` strictly increasing, at least two points, `y` of the same length.
-    pub fn natural(x: &[f64], y: &[f64]) -> Spline {
+    ///
+    /// Source: docs/theory/motions.md, eq. (4).
+    pub fn at_rest_at_ends(x: &[f64], y: &[f64]) -> Spline {
         let n = x.len();
+        let width = |k: usize| x[k + 1] - x[k];
+        let slope = |k: usize| (y[k + 1] - y[k]) / width(k);
+        // Tridiagonal equations of continuous slope; the outer slopes are zero.
         let mut second = vec![0.0; n];
         let mut upper = vec![0.0; n];
-        for k in 1..n.saturating_sub(1) {
-            let (h0, h1) = (x[k] - x[k - 1], x[k + 1] - x[k]);
-            let rhs = 6.0 * ((y[k + 1] - y[k]) / h1 - (y[k] - y[k - 1]) / h0);
-            let pivot = 2.0 * (h0 + h1) - h0 * upper[k - 1];
-            upper[k] = h1 / pivot;
-            second[k] = (rhs - h0 * second[k - 1]) / pivot;
+        for k in 0..n {
+            let (before, after) = (
+                if k > 0 { width(k - 1) } else { 0.0 },
+                if k + 1 < n { width(k) } else { 0.0 },
+            );
+            let jump =
+                if k + 1 < n { slope(k) } else { 0.0 } - if k > 0 { slope(k - 1) } else { 0.0 };
+            let carried = if k > 0 { before * upper[k - 1] } else { 0.0 };
+            let pivot = 2.0 * (before + after) - carried;
+            upper[k] = after / pivot;
+            let previous = if k > 0 { before * second[k - 1] } else { 0.0 };
+            second[k] = (6.0 * jump - previous) / pivot;
         }
-        for k in (1..n.saturating_sub(1)).rev() {
+        for k in (0..n - 1).rev() {
             second[k] -= upper[k] * second[k + 1];
         }
         Spline {
@@ -63,16 +74,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fourth_order_on_a_sine() {
+    fn fourth_order_on_a_wave() {
         let error = |n: usize| {
             let x: Vec<f64> = (0..=n)
                 .map(|k| k as f64 * std::f64::consts::PI / n as f64)
                 .collect();
-            let y: Vec<f64> = x.iter().map(|x| x.sin()).collect();
-            let spline = Spline::natural(&x, &y);
+            let y: Vec<f64> = x.iter().map(|x| x.cos()).collect();
+            let spline = Spline::at_rest_at_ends(&x, &y);
             (0..1000)
                 .map(|k| 0.001 * k as f64 * std::f64::consts::PI)
-                .map(|x| (spline.at(x)[0] - x.sin()).abs())
+                .map(|x| (spline.at(x)[0] - x.cos()).abs())
                 .fold(0.0, f64::max)
         };
         let order = (error(20) / error(40)).log2();
@@ -81,7 +92,7 @@ mod tests {
 
     #[test]
     fn derivatives_match_finite_differences_and_ends_hold() {
-        let spline = Spline::natural(&[0.0, 1.0, 3.0, 4.0], &[0.0, 2.0, -1.0, 1.0]);
+        let spline = Spline::at_rest_at_ends(&[0.0, 1.0, 3.0, 4.0], &[0.0, 2.0, -1.0, 1.0]);
         for x in [0.3, 1.7, 3.4] {
             let [_, first, second] = spline.at(x);
             let h = 1e-5;
@@ -89,6 +100,12 @@ mod tests {
             assert!((first - (plus - minus) / (2.0 * h)).abs() < 1e-8);
             assert!((second - (plus - 2.0 * mid + minus) / (h * h)).abs() < 1e-4);
         }
+        for (end, value) in [(0.0, 0.0), (4.0, 1.0)] {
+            let [at, slope, _] = spline.at(end);
+            assert!((at - value).abs() < 1e-15 && slope.abs() < 1e-14);
+        }
+        let inside = spline.at(1e-9)[1].abs() + spline.at(4.0 - 1e-9)[1].abs();
+        assert!(inside < 1e-7, "no jump of velocity at the ends: {inside}");
         assert_eq!(spline.at(-1.0), [0.0, 0.0, 0.0]);
         assert_eq!(spline.at(9.0), [1.0, 0.0, 0.0]);
     }

@@ -20,7 +20,7 @@ const SMALLEST_CUT: f64 = 1e-4;
 /// Share of the allowed error that the next step aims at.
 const SAFETY: f64 = 0.85;
 /// Weight of the mass that drowns stiffness and damping when accelerations are found [1/s2].
-const MASS_ONLY: f64 = 1e14;
+const MASS_ONLY: f64 = 1e20;
 
 /// What the integration took.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -108,7 +108,7 @@ pub fn simulate(
         .dynamics
         .as_ref()
         .ok_or(DynamicsError::NoDynamics)?;
-    let mut solver = SystemSolver::new(system, true);
+    let mut solver = SystemSolver::moving(system);
     let mut state = MotionState::at_rest(start.configuration().clone());
     find_accelerations(&mut solver, &mut state);
     let parameters = AlphaParameters::with_spectral_radius(settings.spectral_radius);

@@ -133,7 +133,7 @@ pub fn solve_statics<'a>(
     progress: &mut dyn FnMut(&StaticsProgress) -> ControlFlow<()>,
 ) -> Result<StaticSolution<'a>, StaticsError> {
     let settings = &system.model().statics;
-    let solver = SystemSolver::new(system, settings.current);
+    let solver = SystemSolver::at_rest(system, settings.current);
     let mut search = Search::new(solver, system.first_shape().clone(), progress);
     let allowed = settings.tolerance * system.reference_force();
     search.run(allowed, settings.max_iterations)?;

@@ -8,9 +8,11 @@ use catenix_numerics::{Matrix3, Vector3, so3::hat};
 /// Properties of a lump.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Lump {
-    /// Mass and added mass, the same in all directions [kg].
-    pub total_mass: f64,
-    /// rho CdA / 2 [N s2/m2].
+    /// Mass of the structure [kg].
+    pub mass: f64,
+    /// Added mass under water, the same in all directions [kg].
+    pub added_mass: f64,
+    /// rho CdA / 2, under water [N s2/m2].
     pub drag: f64,
 }
 
@@ -60,6 +62,8 @@ impl LumpForce {
 /// Derivatives of the total force at the lump.
 #[derive(Debug, Clone, Copy)]
 pub struct LumpTangent {
+    /// By the share under water.
+    pub share: Vector3,
     /// By the velocity of the water at the lump.
     pub water: Matrix3,
     /// By a rotation of the frame.
@@ -75,27 +79,29 @@ pub struct LumpTangent {
 }
 
 impl Lump {
-    /// Force on the frame.
-    pub fn force(&self, m: &LumpMotion) -> LumpForce {
+    /// Force on the frame, with a `share` of the lump under water.
+    pub fn force(&self, share: f64, m: &LumpMotion) -> LumpForce {
         let u = m.relative();
+        let mass = self.mass + share * self.added_mass;
         LumpForce {
-            drag: u * (self.drag * u.norm()),
-            inertia: m.point_acceleration() * -self.total_mass,
+            drag: u * (share * self.drag * u.norm()),
+            inertia: m.point_acceleration() * -mass,
         }
     }
 
     /// Exact derivatives of the total of [`Self::force`].
-    pub fn tangent(&self, m: &LumpMotion) -> LumpTangent {
+    pub fn tangent(&self, share: f64, m: &LumpMotion) -> LumpTangent {
         let u = m.relative();
         let speed = u.norm();
-        let mut drag = Matrix3::identity() * (self.drag * speed);
+        let mut drag = Matrix3::identity() * (share * self.drag * speed);
         if speed > 0.0 {
-            drag += u * u.transpose() * (self.drag / speed);
+            drag += u * u.transpose() * (share * self.drag / speed);
         }
         let arm = hat(&m.arm);
         let (w, alpha) = (hat(&m.spin), hat(&m.angular_acceleration));
-        let mass = self.total_mass;
+        let mass = self.mass + share * self.added_mass;
         LumpTangent {
+            share: u * (self.drag * speed) - m.point_acceleration() * self.added_mass,
             water: drag,
             rotation: drag * w * arm + (alpha + w * w) * arm * mass,
             velocity: -drag,
@@ -114,9 +120,11 @@ mod tests {
     #[test]
     fn derivatives_match_finite_differences() {
         let lump = Lump {
-            total_mass: 3.0,
-            drag: 4.0,
+            mass: 2.0,
+            added_mass: 1.5,
+            drag: 5.0,
         };
+        let share = 0.8;
         let m = LumpMotion {
             arm: Vector3::new(0.5, -0.2, 0.9),
             relative_velocity: Vector3::new(1.0, 0.5, -0.4),
@@ -124,14 +132,18 @@ mod tests {
             acceleration: Vector3::new(0.3, -0.6, 0.1),
             angular_acceleration: Vector3::new(-0.7, 0.4, 0.2),
         };
-        let exact = lump.tangent(&m);
+        let exact = lump.tangent(share, &m);
         let h = 1e-6;
+        let by_share =
+            (lump.force(share + h, &m).total() - lump.force(share - h, &m).total()) / (2.0 * h);
+        assert!((exact.share - by_share).norm() < 1e-7);
         for k in 0..3 {
             let mut d = Vector3::zeros();
             d[k] = h;
             let check = |name: &str, got: Vector3, at: &dyn Fn(f64) -> LumpMotion| {
-                let want =
-                    (lump.force(&at(1.0)).total() - lump.force(&at(-1.0)).total()) / (2.0 * h);
+                let want = (lump.force(share, &at(1.0)).total()
+                    - lump.force(share, &at(-1.0)).total())
+                    / (2.0 * h);
                 assert!(
                     (got - want).norm() < 1e-7,
                     "{name}, column {k}: {got} not {want}"

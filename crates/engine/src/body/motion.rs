@@ -20,6 +20,17 @@ pub struct RigidMotion {
     pub spin: Vector3,
 }
 
+impl RigidMotion {
+    /// In the same place, not moving.
+    pub fn stopped(self) -> RigidMotion {
+        RigidMotion {
+            velocity: Vector3::zeros(),
+            spin: Vector3::zeros(),
+            ..self
+        }
+    }
+}
+
 /// A vessel ready for evaluation.
 #[derive(Debug, Clone)]
 pub struct PrescribedMotion {
@@ -83,7 +94,7 @@ impl PrescribedMotion {
                 Motion::History { time, values } => Part::History(Box::new(
                     values
                         .each_ref()
-                        .map(|y| (!y.is_empty()).then(|| Spline::natural(time, y))),
+                        .map(|y| (!y.is_empty()).then(|| Spline::at_rest_at_ends(time, y))),
                 )),
             })
             .collect();
@@ -149,7 +160,7 @@ impl PrescribedMotion {
         (value, rate)
     }
 
-    /// Motion at a time; before t = 0 as at t = 0, at rest.
+    /// Motion at a time; before t = 0 as at t = 0.
     pub fn at(&self, time: f64) -> RigidMotion {
         let (value, rate) = self.displacement(time.max(0.0));
         let [surge, sway, heave, roll, pitch, yaw] = value;

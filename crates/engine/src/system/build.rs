@@ -210,7 +210,8 @@ fn place_attachment(
             frame: layout.first_frame + element,
             arm: Vector3::new(offset, 0.0, 0.0),
             lump: Lump {
-                total_mass: share * (attachment.mass + attachment.added_mass),
+                mass: share * attachment.mass,
+                added_mass: share * attachment.added_mass,
                 drag: share * 0.5 * environment.water_density * attachment.drag_area,
             },
             weight,

@@ -257,7 +257,7 @@ pub(super) fn add_lump(
     let arm = motion.arm;
     let wet = Submergence::new(m.position.z + arm.z, 0.0, 0.0, lump.diameter);
     let lift = Vector3::z() * (lump.buoyancy * wet.share - lump.weight);
-    let force = lump.lump.force(&motion).total() + lift;
+    let force = lump.lump.force(wet.share, &motion).total() + lift;
     *residual -= six(&force, &arm.cross(&force));
 
     let Some((block, weights)) = tangent else {
@@ -267,9 +267,9 @@ pub(super) fn add_lump(
         block,
         weights: *weights,
     };
-    let t = lump.lump.tangent(&motion);
+    let t = lump.lump.tangent(wet.share, &motion);
     let arm_hat = hat(&arm);
-    let by_height = (t.water * slope + Vector3::z() * (lump.buoyancy * wet.by_height))
+    let by_height = (t.water * slope + (t.share + Vector3::z() * lump.buoyancy) * wet.by_height)
         * Vector3::z().transpose();
     let by_rotation = t.rotation - by_height * arm_hat;
     add.position(0, &-by_height);
@@ -341,12 +341,13 @@ pub(super) fn lump_energy(
     let velocity = m.velocity + m.spin.cross(&motion.arm);
     let height = m.position.z + motion.arm.z;
     let wet = Submergence::new(height, 0.0, 0.0, lump.diameter);
-    let force = lump.lump.force(&motion);
+    let force = lump.lump.force(wet.share, &motion);
     let powers = LoadPowers {
         drag: force.drag.dot(&velocity),
         buoyancy: lump.buoyancy * wet.share * velocity.z,
         ..LoadPowers::default()
     };
-    let kinetic = 0.5 * lump.lump.total_mass * velocity.norm_squared();
+    let kinetic =
+        0.5 * (lump.lump.mass + wet.share * lump.lump.added_mass) * velocity.norm_squared();
     (kinetic, lump.weight * height, powers)
 }

@@ -19,7 +19,7 @@ use catenix_numerics::{Configuration, Matrix3, Topology, Vector3};
 use thiserror::Error;
 
 use crate::body::lump::Lump;
-use crate::body::motion::{PrescribedMotion, RigidMotion};
+use crate::body::motion::PrescribedMotion;
 use crate::element::dem::joint::JointStiffness;
 use crate::element::dem::stiffness::ConnectorStiffness;
 use crate::hydro::current::CurrentField;
@@ -304,11 +304,6 @@ impl System {
     /// Times at which loads jump: a step should end there.
     pub(crate) fn event_times(&self) -> impl Iterator<Item = f64> + '_ {
         self.current.event_times()
-    }
-
-    /// Motions of all vessels at a time.
-    pub(crate) fn vessel_motions(&self, time: f64) -> Vec<RigidMotion> {
-        self.vessels.iter().map(|vessel| vessel.at(time)).collect()
     }
 
     /// Whether a channel can be read from this system.

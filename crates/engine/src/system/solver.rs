@@ -17,6 +17,8 @@ pub struct SystemSolver<'a> {
     pub(super) system: &'a System,
     /// Whether the current acts.
     current_acts: bool,
+    /// Whether vessels have their velocities, or stand still.
+    vessels_move: bool,
     pub(super) vessels: Vec<RigidMotion>,
     pub(super) pairs: Vec<EvaluatedPair>,
     predicted: Vec<Prediction>,
@@ -27,10 +29,23 @@ pub struct SystemSolver<'a> {
 }
 
 impl<'a> SystemSolver<'a> {
-    /// Room for `system`; without `current_acts` the water stands still.
-    pub fn new(system: &'a System, current_acts: bool) -> SystemSolver<'a> {
+    /// For equilibrium: vessels stand still, and the current acts only when `current_acts`.
+    pub fn at_rest(system: &'a System, current_acts: bool) -> SystemSolver<'a> {
+        Self::new(system, current_acts, false)
+    }
+
+    /// For motion: vessels move and the current acts.
+    pub fn moving(system: &'a System) -> SystemSolver<'a> {
+        Self::new(system, true, true)
+    }
+
+    fn new(system: &'a System, current_acts: bool, vessels_move: bool) -> SystemSolver<'a> {
         let state = MotionState::at_rest(system.first_shape.clone());
-        let vessels = system.vessel_motions(0.0);
+        let vessels: Vec<RigidMotion> = system
+            .vessels
+            .iter()
+            .map(|vessel| vessel.at(0.0).stopped())
+            .collect();
         let pairs = system
             .connectors
             .iter()
@@ -39,6 +54,7 @@ impl<'a> SystemSolver<'a> {
         SystemSolver {
             system,
             current_acts,
+            vessels_move,
             vessels,
             pairs,
             predicted: vec![Prediction::default(); system.connectors.len()],
@@ -110,6 +126,9 @@ impl ImplicitSystem for SystemSolver<'_> {
     ) {
         for (motion, vessel) in self.vessels.iter_mut().zip(&self.system.vessels) {
             *motion = vessel.at(time);
+            if !self.vessels_move {
+                *motion = motion.stopped();
+            }
         }
         let predictions = self.has_prediction.then_some(self.predicted.as_slice());
         assembly::assemble(

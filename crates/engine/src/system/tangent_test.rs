@@ -119,7 +119,7 @@ fn iteration_matrix_matches_finite_differences() {
     };
     let time = 0.7;
 
-    let mut solver = SystemSolver::new(&system, true);
+    let mut solver = SystemSolver::moving(&system);
     let mut residual = vec![Vector6::zeros(); n];
     solver.begin();
     solver.assemble(time, &state, Some(&weights), &mut residual);

@@ -80,7 +80,7 @@ choice! {
 }
 
 table! {
-    /// Motion given at points in time, joined by a natural cubic spline and held constant before
+    /// Motion given at points in time, joined by a cubic spline that starts and ends at rest, held constant before
     /// the first and after the last.
     pub(super) struct HistoryTable {
         /// CSV file, relative to the model file. Its first row names the columns: `time_s` and any
