@@ -353,15 +353,16 @@ fn a_vertical_pipe_in_still_water_stays_vertical() {
     let run = run(&model(text));
     run.assert_sound(60.0, 1e-3);
     let wet = (7850.0 - WATER) * 0.25 * PI * (0.09 - 0.0676) * G;
-    for fields in [&run.statics.fields[0], &run.fields[0]] {
+    let weight_in_air = (wet + WATER * G * 0.25 * PI * 0.09) * 1000.0;
+    // Each of 50 elements may keep the residual that the analysis allows, all with one sign.
+    for (fields, residual) in [(&run.statics.fields[0], 1e-7), (&run.fields[0], 1e-6)] {
         for node in 0..=50 {
             let [x, y, _] = fields.position(node);
             assert_near("x", x, 0.0, 1e-9);
             assert_near("y", y, 0.0, 1e-9);
             let below = wet * (1000.0 - 20.0 * node as f64);
             let tension = fields.get(LineQuantity::EffectiveTension)[node];
-            // The residual allowed per element is 1e-6 of the weight in air, twice the wet weight.
-            assert_near("tension", tension, below, 1e-5 * wet * 1000.0);
+            assert_near("tension", tension, below, 50.0 * residual * weight_in_air);
         }
     }
 }
