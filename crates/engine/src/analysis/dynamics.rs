@@ -117,7 +117,7 @@ pub fn simulate(
     Simulation {
         settings,
         newton: NewtonSettings {
-            tolerance_newtons: settings.tolerance * system.reference_force(),
+            tolerance_newtons: system.allowed_residual(settings.tolerance),
             max_iterations: settings.max_iterations,
         },
         solver,

@@ -27,8 +27,8 @@ pub struct EnergyAccount {
     pub work_structural_damping_j: f64,
     /// Work of the moved ends [J].
     pub work_moved_ends_j: f64,
-    /// Change of stored energy less all works, over the largest amount of energy that was moved
-    /// (the sum of absolute works of each kind) [-]. Zero for an exact integration.
+    /// Change of stored energy less all works, over the largest of the energies: moved (the sum of
+    /// absolute works of each kind) or held (kinetic and elastic at the end) [-]. Zero for an exact integration.
     pub imbalance: f64,
 }
 
@@ -65,10 +65,11 @@ impl EnergyLedger {
     pub(super) fn account(&self) -> EnergyAccount {
         let stored_change = self.last.stored() - self.first.stored();
         let total: f64 = self.works.iter().sum();
+        let held = self.last.kinetic + self.last.elastic;
         let scale = self
             .moved
             .iter()
-            .fold(stored_change.abs(), |a, &b| a.max(b));
+            .fold(held.max(stored_change.abs()), |a, &b| a.max(b));
         let [drag, added_mass, buoyancy, seabed, damping, ends] = self.works;
         EnergyAccount {
             kinetic_j: self.last.kinetic,

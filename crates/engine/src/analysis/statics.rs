@@ -28,6 +28,8 @@ const ROTATION_LIMIT: f64 = 0.4;
 const STEP_TOLERANCE: f64 = 1e-5;
 /// Growth, per converged step, of the largest step that is tried after a failure.
 const LIMIT_GROWTH: f64 = 1.25;
+/// Most Newton steps after the residual is allowed.
+const SHARPENING_STEPS: usize = 5;
 /// Pseudo-step beyond which the inertia term no longer matters [s].
 const LARGEST_STEP: f64 = 1e4;
 /// Squared frequency of the touch of stiffness that keeps free spins out of the matrix
@@ -135,7 +137,7 @@ pub fn solve_statics<'a>(
     let settings = &system.model().statics;
     let solver = SystemSolver::at_rest(system, settings.current);
     let mut search = Search::new(solver, system.first_shape().clone(), progress);
-    let allowed = settings.tolerance * system.reference_force();
+    let allowed = system.allowed_residual(settings.tolerance);
     search.run(allowed, settings.max_iterations)?;
     let Search {
         mut solver,
@@ -228,6 +230,7 @@ impl<'s, 'a> Search<'s, 'a> {
             let step_residual = self.residual.newtons;
             self.static_residual();
             if self.residual.newtons <= allowed {
+                self.sharpen();
                 return Ok(());
             }
             match end {
@@ -259,6 +262,43 @@ impl<'s, 'a> Search<'s, 'a> {
                     allowed_n: allowed,
                     owner: system.owner(self.residual.frame),
                 });
+            }
+        }
+    }
+
+    /// Goes on with Newton steps once the residual is allowed, as long as they help: what is left at
+    /// the elements may add up along a line, and these steps cost next to nothing.
+    fn sharpen(&mut self) {
+        let mass = 1.0 / (LARGEST_STEP * LARGEST_STEP);
+        let weights = TangentWeights {
+            velocity: 0.0,
+            acceleration: mass,
+            rotation: None,
+        };
+        for _ in 0..SHARPENING_STEPS {
+            let before = self.residual.newtons;
+            self.start.copy_from(&self.state.configuration);
+            self.travel.fill(Vector6::zeros());
+            self.solver.begin();
+            self.solver
+                .assemble(0.0, &self.state, Some(&weights), &mut self.residual_vector);
+            self.solver.hold_spins(&self.state, SPIN_HOLD, 0.0);
+            if self
+                .solver
+                .solve(&self.residual_vector, &mut self.increment)
+                .is_err()
+            {
+                break;
+            }
+            self.iterations += 1;
+            self.advance();
+            self.static_residual();
+            if self.residual.newtons.is_nan() || self.residual.newtons > 0.5 * before {
+                if self.residual.newtons.is_nan() || self.residual.newtons > before {
+                    self.state.configuration.copy_from(&self.start);
+                    self.static_residual();
+                }
+                break;
             }
         }
     }

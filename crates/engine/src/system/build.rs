@@ -13,13 +13,16 @@ use super::{
 use crate::body::lump::Lump;
 use crate::body::motion::PrescribedMotion;
 use crate::element::dem::joint::{DotLaw, DotSpring, JointStiffness};
-use crate::element::dem::stiffness::{ConnectorStiffness, HalfElement};
+use crate::element::dem::stiffness::{ConnectorStiffness, HalfElement, rotary_share};
 use crate::hydro::current::CurrentField;
 use crate::hydro::morison::DragCoefficients;
 
 /// Share of an element's length within which a lump counts as sitting at the element's end; it is
 /// then shared by the two neighbours.
 const END_SHARE: f64 = 1e-6;
+
+/// Roundings, of the size of the coordinates, that add up in the gap of a connector.
+const ROUND_OFF: f64 = 4.0;
 
 pub(super) fn build(model: &Model) -> Result<System, SystemError> {
     if model.lines.is_empty() && model.bodies.is_empty() {
@@ -63,6 +66,14 @@ pub(super) fn build(model: &Model) -> Result<System, SystemError> {
             .iter()
             .map(|lump| lump.buoyancy.max(lump.weight))
             .sum::<f64>();
+    // Forces below this are round-off: the stiffest spring times the spacing of numbers as large
+    // as the coordinates.
+    let stiffest = connectors
+        .iter()
+        .map(|connector| connector.law.stiffness())
+        .fold(0.0, |largest: f64, k| largest.max(k.axial).max(k.shear));
+    let furthest = shape.position.iter().map(|x| x.amax()).fold(1.0, f64::max);
+    let residual_floor = ROUND_OFF * f64::EPSILON * furthest * stiffest;
     let reference_length = model.lines.iter().map(Line::length).fold(1.0, f64::max);
     Ok(System {
         topology: Topology::new(chains, frames.len()),
@@ -76,6 +87,7 @@ pub(super) fn build(model: &Model) -> Result<System, SystemError> {
         first_shape: shape,
         reference_force,
         reference_length,
+        residual_floor,
     })
 }
 
@@ -116,7 +128,7 @@ fn element_frame(model: &Model, line_type: &LineType, length: f64) -> Frame {
         Some(_) => 0.5 * line_type.polar_inertia * length,
         None => 0.0,
     };
-    let normal_inertia = mass * radius_squared + section;
+    let normal_inertia = mass * radius_squared * rotary_share(line_type, length) + section;
     Frame {
         axis: Vector3::x(),
         length,
@@ -134,7 +146,7 @@ fn element_frame(model: &Model, line_type: &LineType, length: f64) -> Frame {
         },
         added_normal,
         added_axial: line_type.axial_added_mass * displaced,
-        added_inertia: added_normal * radius_squared,
+        added_inertia: added_normal * radius_squared * rotary_share(line_type, length),
         weight: mass * model.environment.gravity,
         buoyancy: displaced * model.environment.gravity,
         buoyancy_arm: Vector3::zeros(),
@@ -297,10 +309,7 @@ fn connect(
                 )
             }
         };
-        let stiffness = match &connector.law {
-            ConnectorLaw::Beam(stiffness) => stiffness,
-            ConnectorLaw::Joint(joint) => &joint.half,
-        };
+        let stiffness = connector.law.stiffness();
         if !(stiffness.axial.is_finite() && stiffness.axial > 0.0 && stiffness.shear.is_finite()) {
             return Err(SystemError::Unusable {
                 owner: format!("line '{}'", line.name),

@@ -60,6 +60,7 @@ pub struct System {
     pub(crate) first_shape: Configuration,
     pub(crate) reference_force: f64,
     pub(crate) reference_length: f64,
+    pub(crate) residual_floor: f64,
 }
 
 /// Constant properties of a rigid frame: an element of a line, or a body.
@@ -168,6 +169,14 @@ pub(crate) enum ConnectorLaw {
 }
 
 impl ConnectorLaw {
+    /// Stiffness of the connector, or of the half element behind a joint.
+    pub fn stiffness(&self) -> &ConnectorStiffness {
+        match self {
+            ConnectorLaw::Beam(stiffness) => stiffness,
+            ConnectorLaw::Joint(joint) => &joint.half,
+        }
+    }
+
     /// How far beyond the elements' meeting point, towards end B, the connector acts [m].
     pub fn shift(&self) -> f64 {
         match self {
@@ -241,6 +250,14 @@ impl System {
     /// Number of frames: elements and bodies.
     pub fn frame_count(&self) -> usize {
         self.frames.len()
+    }
+
+    /// Largest residual force that counts as solved [N]: a fraction of the reference force, or
+    /// what round-off leaves where that is more.
+    ///
+    /// Source: docs/theory/solver.md, eq. (8).
+    pub fn allowed_residual(&self, tolerance: f64) -> f64 {
+        (tolerance * self.reference_force).max(self.residual_floor)
     }
 
     /// Force that tolerances are relative to: weight of everything in air [N].

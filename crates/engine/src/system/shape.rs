@@ -170,7 +170,9 @@ fn settle(model: &Model, supports: &mut Supports) {
         let step = longest * 0.05 * (1.0 - round as f64 / ROUNDS as f64);
         for (index, body) in supports.bodies.iter_mut().enumerate() {
             if !fixed[index] {
-                body.position.z -= step * pull[index].signum();
+                // What floats rises to the surface and no further.
+                let ceiling = body.position.z.max(0.0);
+                body.position.z = (body.position.z - step * pull[index].signum()).min(ceiling);
                 if environment.seabed.is_some() {
                     body.position.z = body.position.z.max(floor);
                 }

@@ -184,8 +184,7 @@ impl JointState {
                 translation: Matrix3::identity() * -v + spin_hat,
                 first_rotation: -hat(&support.spin) * lever[0] + spin_hat * lever[0]
                     - lever[0] * rates.rotation[0] * v,
-                second_rotation: spin_hat * lever[1] - spin_hat * lever[1]
-                    + (lever[1] + gap_hat) * rates.rotation[1] * v,
+                second_rotation: (lever[1] + gap_hat) * rates.rotation[1] * v,
             };
             let turn = (Matrix3::identity() * axis.dot(q) + axis * q.transpose()) * along;
             let mut damping = rate.led_by(&matrix);

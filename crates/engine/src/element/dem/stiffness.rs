@@ -7,9 +7,36 @@ use catenix_numerics::Vector3;
 
 use super::connector::Stress;
 
-/// Fraction of the bending compliance l^3 / 12 EI that the shear spring of a shear-rigid line has.
-/// Small enough that its dispersion, this x (k l)^2 / 24, hides below the chain's own error.
-const RIGID_SHEAR: f64 = 1e-4;
+/// Shear compliance of a shear-rigid element over its bending compliance l^3 / 12 EI. The rotary
+/// inertia makes up for it ([`rotary_share`]), so its dispersion is of fourth order.
+const RIGID_SHEAR: f64 = 1e-3;
+/// Largest shear stiffness over the axial one: over 100 times that of a real pipe, and low enough
+/// that round-off in the positions stays below the tolerances with short elements in deep water.
+const RIGID_SHEAR_LIMIT: f64 = 30.0;
+/// Smallest share of the rotary inertia, for elements shorter than they are thick.
+const LEAST_ROTARY_SHARE: f64 = 0.1;
+
+/// Share of m l^2 / 12 that an element has as rotary inertia about its normal axes: what the
+/// shear spring of a shear-rigid line takes away in frequency, the inertia gives back.
+///
+/// Source: docs/theory/dem.md, eq. (22).
+pub fn rotary_share(line_type: &LineType, length: f64) -> f64 {
+    let bending = line_type.bending_stiffness;
+    match line_type.shear_stiffness {
+        Some(_) => 1.0,
+        None => {
+            let shear = rigid_shear(line_type, length);
+            (1.0 - 12.0 * bending / (length * length * shear)).max(LEAST_ROTARY_SHARE)
+        }
+    }
+}
+
+/// Shear stiffness of a shear-rigid line [N]: stiffer than bending makes it, and than extension is
+/// (a chain without bending stiffness still needs its elements held together).
+fn rigid_shear(line_type: &LineType, length: f64) -> f64 {
+    let by_bending = 12.0 * line_type.bending_stiffness / (RIGID_SHEAR * length * length);
+    (by_bending + line_type.axial_stiffness).min(RIGID_SHEAR_LIMIT * line_type.axial_stiffness)
+}
 
 /// Transversely isotropic stiffness of a connector.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,15 +82,7 @@ impl HalfElement<'_> {
         let t = self.line_type;
         let l = self.length;
         let bending = 0.5 * l / t.bending_stiffness;
-        let shear = match t.shear_stiffness {
-            Some(stiffness) => 0.5 * l / stiffness,
-            // Rigid in shear: stiffer than bending makes it, and than extension is (a chain
-            // without bending stiffness still needs its elements held together).
-            None => {
-                0.5 / (12.0 * t.bending_stiffness / (RIGID_SHEAR * l.powi(3))
-                    + t.axial_stiffness / l)
-            }
-        };
+        let shear = 0.5 * l / t.shear_stiffness.unwrap_or_else(|| rigid_shear(t, l));
         Compliance {
             axial: 0.5 * l / t.axial_stiffness,
             shear,
