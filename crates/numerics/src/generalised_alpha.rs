@@ -36,6 +36,11 @@ impl MotionState {
     }
 }
 
+/// Newton iterations before the line search looks at their residual.
+const UNCHECKED_ITERATIONS: usize = 4;
+/// Most halvings of an increment.
+const MOST_HALVINGS: usize = 3;
+
 /// How velocity and acceleration follow an increment of the configuration.
 #[derive(Debug, Clone, Copy)]
 pub struct TangentWeights<'a> {
@@ -227,14 +232,15 @@ impl GeneralisedAlpha {
         let acceleration = (1.0 - alpha_m) / ((1.0 - alpha_f) * beta * step * step);
         system.begin();
         let mut iterations = 0;
+        let mut previous = f64::INFINITY;
         loop {
             // After the first iteration the residual alone usually shows convergence; the matrix
             // is only built when it does not.
             let mut converged = false;
             if iterations > 0 {
-                system.assemble(end_time, &self.trial, None, &mut self.residual);
-                let residual = system.residual_size(&self.residual);
-                converged = residual.newtons <= newton.tolerance_newtons;
+                let residual = self.search_line(system, end_time, step, iterations, previous);
+                converged = residual <= newton.tolerance_newtons;
+                previous = residual;
             }
             if !converged {
                 for (weight, travel) in self.rotation_weights.iter_mut().zip(&self.travel) {
@@ -281,6 +287,33 @@ impl GeneralisedAlpha {
             iterations += 1;
             system.moving(&self.increment);
             self.correct(step);
+        }
+    }
+
+    /// Evaluates the residual after an increment, and takes half of the increment back as long as
+    /// it made matters worse. The first iterations go unchecked: in the mixed form their residual
+    /// may rise, and the next iteration repairs it.
+    fn search_line(
+        &mut self,
+        system: &mut dyn ImplicitSystem,
+        end_time: f64,
+        step: f64,
+        iterations: usize,
+        previous: f64,
+    ) -> f64 {
+        let mut halvings = 0;
+        loop {
+            system.assemble(end_time, &self.trial, None, &mut self.residual);
+            let residual = system.residual_size(&self.residual).newtons;
+            let worse = !(residual < previous);
+            if !worse || iterations < UNCHECKED_ITERATIONS || halvings == MOST_HALVINGS {
+                return residual;
+            }
+            halvings += 1;
+            self.increment.iter_mut().for_each(|d| *d *= -0.5);
+            self.correct(step);
+            // What is left of the increment, for the next halving.
+            self.increment.iter_mut().for_each(|d| *d *= -1.0);
         }
     }
 
