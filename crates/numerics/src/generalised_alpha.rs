@@ -5,95 +5,13 @@
 //! "Lie group generalized-alpha time integration of constrained flexible multibody systems",
 //! Mech. Mach. Theory 48 (2012) 121-137, here with left multiplication of global rotations.
 
-use crate::{Configuration, Matrix3, Vector6, so3};
-
-/// Configuration with its velocity and acceleration, all global.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct MotionState {
-    /// Positions and rotations.
-    pub configuration: Configuration,
-    /// Velocity and angular velocity, (n) [m/s, rad/s].
-    pub velocity: Vec<Vector6>,
-    /// Acceleration and angular acceleration, (n) [m/s2, rad/s2].
-    pub acceleration: Vec<Vector6>,
-}
-
-impl MotionState {
-    /// At rest in `configuration`.
-    pub fn at_rest(configuration: Configuration) -> MotionState {
-        let zeros = vec![Vector6::zeros(); configuration.len()];
-        MotionState {
-            configuration,
-            velocity: zeros.clone(),
-            acceleration: zeros,
-        }
-    }
-
-    fn copy_from(&mut self, other: &MotionState) {
-        self.configuration.copy_from(&other.configuration);
-        self.velocity.clone_from(&other.velocity);
-        self.acceleration.clone_from(&other.acceleration);
-    }
-}
+use crate::implicit::{ImplicitSystem, MotionState, ResidualSize, TangentWeights};
+use crate::{Matrix3, Vector6, so3};
 
 /// Newton iterations before the line search looks at their residual.
 const UNCHECKED_ITERATIONS: usize = 4;
 /// Most halvings of an increment.
 const MOST_HALVINGS: usize = 3;
-
-/// How velocity and acceleration follow an increment of the configuration.
-#[derive(Debug, Clone, Copy)]
-pub struct TangentWeights<'a> {
-    /// d velocity / d increment [1/s].
-    pub velocity: f64,
-    /// d acceleration / d increment [1/s2].
-    pub acceleration: f64,
-    /// Per frame: d (rotation of the step) / d (rotation increment), the factor on the rotational
-    /// part of both; `None` stands for the identity.
-    pub rotation: Option<&'a [Matrix3]>,
-}
-
-/// The largest residual and where it is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ResidualSize {
-    /// Force, or moment over the frame's length [N].
-    pub newtons: f64,
-    /// Frame at which it occurs.
-    pub frame: usize,
-}
-
-/// What a solver needs of a system.
-pub trait ImplicitSystem {
-    /// Number of frames.
-    fn frame_count(&self) -> usize;
-
-    /// Called before the first iteration of a solution.
-    fn begin(&mut self);
-
-    /// Writes the residual (inertia + internal - external forces, (n) [N, N m]) at `time` and,
-    /// with `weights`, prepares the iteration matrix K + weights.velocity C + weights.acceleration M.
-    fn assemble(
-        &mut self,
-        time: f64,
-        state: &MotionState,
-        weights: Option<&TangentWeights<'_>>,
-        residual: &mut [Vector6],
-    );
-
-    /// increment <- -S^-1 residual, with the matrix of the last assembly.
-    ///
-    /// # Errors
-    /// The frame whose pivot is singular.
-    fn solve(&mut self, residual: &[Vector6], increment: &mut [Vector6]) -> Result<(), usize>;
-
-    /// Told of the increment that is about to be applied (the last solution, perhaps shortened).
-    fn moving(&mut self, increment: &[Vector6]) {
-        let _ = increment;
-    }
-
-    /// The largest residual.
-    fn residual_size(&self, residual: &[Vector6]) -> ResidualSize;
-}
 
 /// The four coefficients of the method.
 ///
@@ -411,7 +329,7 @@ impl GeneralisedAlpha {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Vector3;
+    use crate::{Configuration, Vector3};
 
     /// A heavy top without gravity: a free body with three unlike moments of inertia, tied to the
     /// origin by a spring.

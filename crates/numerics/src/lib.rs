@@ -9,6 +9,7 @@ mod block;
 mod chains;
 mod frames;
 mod generalised_alpha;
+mod implicit;
 mod junctions;
 pub mod so3;
 pub mod spline;
@@ -17,9 +18,9 @@ pub use block::{Block6, BlockLu, SingularBlock};
 pub use chains::{BlockMatrix, Chain, FactorError, Factorisation, Topology};
 pub use frames::Configuration;
 pub use generalised_alpha::{
-    AlphaParameters, GeneralisedAlpha, ImplicitSystem, MotionState, NewtonFailure, NewtonSettings,
-    ResidualSize, StepOutcome, TangentWeights,
+    AlphaParameters, GeneralisedAlpha, NewtonFailure, NewtonSettings, StepOutcome,
 };
+pub use implicit::{ImplicitSystem, MotionState, ResidualSize, TangentWeights};
 
 /// Three components, global axes unless said otherwise.
 pub type Vector3 = nalgebra::Vector3<f64>;

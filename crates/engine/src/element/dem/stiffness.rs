@@ -19,7 +19,7 @@ const LEAST_ROTARY_SHARE: f64 = 0.1;
 /// Share of m l^2 / 12 that an element has as rotary inertia about its normal axes: what the
 /// shear spring of a shear-rigid line takes away in frequency, the inertia gives back.
 ///
-/// Source: docs/theory/dem.md, eq. (22).
+/// Source: docs/theory/dem.md, eq. (22a).
 pub fn rotary_share(line_type: &LineType, length: f64) -> f64 {
     let bending = line_type.bending_stiffness;
     match line_type.shear_stiffness {
