@@ -223,8 +223,9 @@ impl GeneralisedAlpha {
         loop {
             system.assemble(end_time, &self.trial, None, &mut self.residual);
             let residual = system.residual_size(&self.residual).newtons;
-            let worse = !(residual < previous);
-            if !worse || iterations < UNCHECKED_ITERATIONS || halvings == MOST_HALVINGS {
+            // A residual that is not a number is worse than any.
+            let better = residual < previous;
+            if better || iterations < UNCHECKED_ITERATIONS || halvings == MOST_HALVINGS {
                 return residual;
             }
             halvings += 1;

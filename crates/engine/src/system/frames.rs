@@ -315,17 +315,17 @@ pub(super) fn frame_energy(
         buoyancy: up.dot(&(m.velocity + m.spin.cross(&arm))),
         seabed_damping: 0.0,
     };
-    if let Some(seabed) = sea.seabed.filter(|_| frame.seabed_length > 0.0) {
-        if let Some(contact) = touch(seabed, frame, m, sea.depth) {
-            let still = FrameMotion {
-                velocity: Vector3::zeros(),
-                ..*m
-            };
-            let spring = touch(seabed, frame, &still, sea.depth);
-            let spring = spring.map_or_else(Vector3::zeros, |contact| contact.force);
-            potential += contact.energy;
-            powers.seabed_damping = (contact.force - spring).dot(&m.velocity);
-        }
+    if let Some(seabed) = sea.seabed.filter(|_| frame.seabed_length > 0.0)
+        && let Some(contact) = touch(seabed, frame, m, sea.depth)
+    {
+        let still = FrameMotion {
+            velocity: Vector3::zeros(),
+            ..*m
+        };
+        let spring = touch(seabed, frame, &still, sea.depth);
+        let spring = spring.map_or_else(Vector3::zeros, |contact| contact.force);
+        potential += contact.energy;
+        powers.seabed_damping = (contact.force - spring).dot(&m.velocity);
     }
     (kinetic, potential, powers)
 }
