@@ -111,6 +111,14 @@ impl Place {
         }
     }
 
+    fn drag_motion(&self, spin: &Vector3) -> DragMotion {
+        DragMotion {
+            axis: self.axis,
+            relative_velocity: self.relative_velocity,
+            spin: *spin,
+        }
+    }
+
     fn tensors(&self, frame: &Frame, rotation: &Matrix3) -> Tensors {
         let share = self.wet.share;
         let structure = rotation * Matrix3::from_diagonal(&frame.inertia) * rotation.transpose();
@@ -133,11 +141,7 @@ pub(super) fn add_frame(
 ) {
     let place = Place::new(frame, m, sea);
     let share = place.wet.share;
-    let drag_motion = DragMotion {
-        axis: place.axis,
-        relative_velocity: place.relative_velocity,
-        spin: m.spin,
-    };
+    let drag_motion = place.drag_motion(&m.spin);
     let drag = morison::drag(&frame.drag, &drag_motion);
     let tensors = place.tensors(frame, &m.rotation);
     let (inertia, inertia_moment) =
@@ -294,11 +298,7 @@ pub(super) fn frame_energy(
 ) -> (f64, f64, LoadPowers) {
     let place = Place::new(frame, m, sea);
     let share = place.wet.share;
-    let drag_motion = DragMotion {
-        axis: place.axis,
-        relative_velocity: place.relative_velocity,
-        spin: m.spin,
-    };
+    let drag_motion = place.drag_motion(&m.spin);
     let drag = morison::drag(&frame.drag, &drag_motion);
     let structure = m.rotation * Matrix3::from_diagonal(&frame.inertia) * m.rotation.transpose();
     let kinetic =
