@@ -7,7 +7,7 @@ use common::{Bench, key_paths, repository_file};
 const BAD_CASE: &str = "
 [cases.bad]
 description = 'asks for the impossible'
-dynamics.tolerance = 1e-30
+motions.heave.amplitude = '1e12 m'
 ";
 
 #[test]
@@ -20,14 +20,20 @@ fn run_writes_results_figures_and_a_comparison() {
         "no progress where nobody looks: {stderr}"
     );
     for text in [
-        "published",
-        "nobody",
+        "Compared with nobody",
+        "pump.offset_x, mean",
+        "Compared with elsewhere",
+        "pipe.end_a.force_z, max, from",
+        "a mean is over the last 8 s, min and max are over the whole run",
+        "mean over the last 8 s",
+        "min and max over the whole run",
         "Note: A test.",
         "times real time",
         "energy imbalance",
     ] {
         assert!(stdout.contains(text), "{text} is missing in\n{stdout}");
     }
+    assert!(stdout.lines().all(|line| line.chars().count() <= 100));
     for file in [
         "results.zarr/zarr.json",
         "summary.json",
@@ -94,6 +100,36 @@ fn a_failing_case_does_not_stop_the_others() {
     assert_eq!((code, document["status"].as_str()), (0, Some("failed")));
     let (code, _) = bench.json(&["run", "model.toml", "--out", "out", "--case", "one"]);
     assert_eq!(code, 0);
+}
+
+#[test]
+fn references_and_extremes_reach_the_document() {
+    let bench = Bench::new("");
+    let (code, document) = bench.json(&["run", "model.toml", "--out", "out"]);
+    assert_eq!(code, 0);
+    let case = &document["cases"]["one"];
+    let [offset, force] = case["references"].as_array().unwrap().as_slice() else {
+        panic!("two references")
+    };
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    assert_eq!(offset["statistic"], "mean");
+    assert_eq!(
+        (number(&offset["low"]), number(&offset["high"])),
+        (1.0, 1.0)
+    );
+    let mean = number(&case["bodies"]["pump"]["offset_x_m"]);
+    assert_eq!(number(&offset["computed"]), mean);
+    assert!((number(&offset["difference"]) - (mean - 1.0)).abs() < 1e-12);
+
+    assert_eq!(force["statistic"], "max");
+    let end = &case["lines"]["pipe"]["end_a"]["force_z_n"];
+    assert_eq!(force["computed"], end["max"]);
+    assert_eq!(number(&force["difference"]), 0.0, "inside its range");
+    // The run starts at rest and the heave grows, but the mean lies between the extremes.
+    assert!(number(&end["min"]) < number(&end["mean"]));
+    assert!(number(&end["mean"]) < number(&end["max"]));
+    let factor = number(&case["simulated_s"]) / number(&case["cpu_seconds"]);
+    assert!((number(&case["real_time_factor"]) / factor - 1.0).abs() < 1e-12);
 }
 
 #[test]

@@ -21,7 +21,7 @@ pub use line::{
 };
 pub use motion::{Degree, Motion, TowLeg};
 pub use output::{
-    Axis, Channel, ChannelTarget, Figure, LineQuantity, OutputSettings, PublishedValue,
+    Axis, Channel, ChannelTarget, Figure, LineQuantity, OutputSettings, Reference, Statistic,
     all_channels,
 };
 
@@ -59,8 +59,8 @@ pub struct LoadCase {
     pub description: String,
     /// The case's complete model.
     pub model: Model,
-    /// Published numbers that this case's results are compared with.
-    pub published: Vec<PublishedValue>,
+    /// Results from elsewhere that this case's own are compared with.
+    pub references: Vec<Reference>,
 }
 
 /// A model file: its load cases and the figures that draw them together.

@@ -1,5 +1,7 @@
 //! What is recorded, and under which names.
 
+use serde::{Deserialize, Serialize};
+
 use crate::Model;
 
 /// Settings of the result store.
@@ -149,15 +151,43 @@ impl LineQuantity {
     }
 }
 
-/// A number from a publication that a case's result is compared with.
+/// A result from elsewhere that a case's own is compared with: of a publication, a measurement, or
+/// other programs.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PublishedValue {
-    /// Channel whose mean over the statistics window is compared.
+pub struct Reference {
+    /// Channel that is compared.
     pub channel: Channel,
-    /// Published value, in the channel's unit.
-    pub value: f64,
-    /// Where it was published.
+    /// What of the channel is compared.
+    pub statistic: Statistic,
+    /// Lower end of the range, in the channel's unit.
+    pub low: f64,
+    /// Upper end of the range, in the channel's unit; the lower one when it is a single value.
+    pub high: f64,
+    /// Where it is from.
     pub source: String,
+}
+
+/// One number out of a channel's history.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Statistic {
+    /// Mean over the statistics window.
+    Mean,
+    /// Smallest value over the whole run, t = 0 included.
+    Min,
+    /// Largest value over the whole run, t = 0 included.
+    Max,
+}
+
+impl Statistic {
+    /// The word that is written and printed.
+    pub fn word(self) -> &'static str {
+        match self {
+            Statistic::Mean => "mean",
+            Statistic::Min => "min",
+            Statistic::Max => "max",
+        }
+    }
 }
 
 /// A figure: one channel against time, one curve per load case.

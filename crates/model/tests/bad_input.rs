@@ -354,9 +354,28 @@ fn each_kind_of_bad_input() {
             "\"tension\"",
         ),
         (
-            "published unit",
+            "references",
             "[figures.tension]",
-            "[cases.a]\npublished = [{ channel = \"buoy.x\", value = \"3 N\", source = \"\" }]\n[figures.tension]",
+            "[cases.a]
+references = [
+    { channel = \"buoy.x\", value = \"3 N\", source = \"\" },
+    { channel = \"buoy.x\", range = [\"3 m\", \"4 s\"], source = \"\" },
+    { channel = \"buoy.x\", range = [\"-22.6 m\", \"-22.9 m\"], source = \"\" },
+    { channel = \"buoy.x\", value = \"3 m\", range = [\"3 m\", \"4 m\"], source = \"\" },
+    { channel = \"buoy.x\", source = \"\" },
+]
+[figures.tension]",
+        ),
+        (
+            "statistic and length of a range",
+            "[figures.tension]",
+            "[cases.a]
+references = [
+    { channel = \"buoy.x\", statistic = \"maximum\", value = \"3 m\", source = \"\" },
+    { channel = \"buoy.x\", range = [\"3 m\"], source = \"\" },
+    { channel = \"buoy.x\", range = \"3 m\", source = \"\" },
+]
+[figures.tension]",
         ),
         (
             "unknown key of a case",

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use approx::assert_relative_eq;
 use catenix_model::file::read_study;
-use catenix_model::{Joint, LineEnd, Model, Motion, StepControl, Study, SupportRef, TowLeg};
+use catenix_model::{
+    Joint, LineEnd, Model, Motion, Statistic, StepControl, Study, SupportRef, TowLeg,
+};
 
 fn study() -> Study {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/sea-trial-1km.toml");
@@ -49,30 +51,92 @@ fn six_cases_differ_in_current_and_speed() {
 }
 
 #[test]
-fn published_numbers_and_figures() {
+fn references_are_the_paper_and_three_codes() {
     let study = study();
-    let published: Vec<Vec<(&str, &str, f64)>> = study
-        .cases
-        .iter()
-        .map(|case| {
-            let values = case.published.iter();
-            values
-                .map(|v| (v.channel.name.as_str(), v.channel.unit, v.value))
-                .collect()
-        })
-        .collect();
+    let of_source = |case: usize, paper: bool| -> Vec<(&str, Statistic, f64, f64)> {
+        let references = study.cases[case].references.iter();
+        references
+            .filter(|reference| reference.source.starts_with("Li et al. 2011") == paper)
+            .map(|r| (r.channel.name.as_str(), r.statistic, r.low, r.high))
+            .collect()
+    };
     let (offset, force) = ("buffer.offset_x", "hose.end_b.force_x");
-    assert_eq!(
-        published,
+    let published: [&[(&str, f64)]; 6] = [
+        &[(offset, -22.5), (force, 4031.0)],
+        &[(force, 500.0)],
+        &[(offset, -51.0), (force, -4133.0)],
+        &[(offset, -61.9), (force, -7789.0)],
+        &[(offset, -78.5)],
+        &[(offset, -96.2)],
+    ];
+    for (case, values) in published.into_iter().enumerate() {
+        let mean =
+            |(channel, value): &(&'static str, f64)| (*channel, Statistic::Mean, *value, *value);
+        let expected: Vec<_> = values.iter().map(mean).collect();
+        assert_eq!(of_source(case, true), expected);
+    }
+    // Offset [m], force on the miner x and z [kN], least and largest vertical force on the ship
+    // [kN].
+    let codes = [
         [
-            vec![(offset, "m", -22.5), (force, "N", 4031.0)],
-            vec![(force, "N", 500.0)],
-            vec![(offset, "m", -51.0), (force, "N", -4133.0)],
-            vec![(offset, "m", -61.9), (force, "N", -7789.0)],
-            vec![(offset, "m", -78.5)],
-            vec![(offset, "m", -96.2)],
-        ]
-    );
+            (-22.9, -22.6),
+            (4.14, 4.43),
+            (18.9, 18.9),
+            (-1558.0, -741.0),
+        ],
+        [
+            (-36.0, -35.8),
+            (0.38, 0.62),
+            (18.5, 18.5),
+            (-1557.0, -741.0),
+        ],
+        [
+            (-51.6, -51.4),
+            (-3.88, -3.66),
+            (17.9, 18.0),
+            (-1556.0, -740.0),
+        ],
+        [
+            (-61.9, -61.7),
+            (-7.84, -7.63),
+            (17.1, 17.1),
+            (-1557.0, -740.0),
+        ],
+        [
+            (-78.8, -78.5),
+            (-12.0, -11.9),
+            (16.0, 16.0),
+            (-1555.0, -738.0),
+        ],
+        [
+            (-96.2, -96.0),
+            (-16.1, -16.0),
+            (15.0, 15.0),
+            (-1552.0, -734.0),
+        ],
+    ];
+    for (case, [offsets, x, z, top]) in codes.into_iter().enumerate() {
+        let top_force = "lift_pipe.end_a.force_z";
+        let expected = [
+            (offset, Statistic::Mean, offsets, 1.0),
+            (force, Statistic::Mean, x, 1e3),
+            ("hose.end_b.force_z", Statistic::Mean, z, 1e3),
+            (top_force, Statistic::Min, (top.0, top.0), 1e3),
+            (top_force, Statistic::Max, (top.1, top.1), 1e3),
+        ];
+        let found = of_source(case, false);
+        assert_eq!(found.len(), expected.len());
+        for (found, (channel, statistic, (low, high), unit)) in found.into_iter().zip(expected) {
+            assert_eq!((found.0, found.1), (channel, statistic));
+            assert_relative_eq!(found.2, low * unit, max_relative = 1e-14);
+            assert_relative_eq!(found.3, high * unit, max_relative = 1e-14);
+        }
+    }
+}
+
+#[test]
+fn figures_and_note() {
+    let study = study();
     let figures: Vec<(&str, &str)> = study
         .figures
         .iter()

@@ -5,8 +5,8 @@ use std::path::Path;
 use approx::assert_relative_eq;
 use catenix_model::file::parse_study;
 use catenix_model::{
-    ChannelTarget, EndConnection, Joint, LineEnd, LineQuantity, Model, Motion, StepControl, Study,
-    SupportRef,
+    ChannelTarget, EndConnection, Joint, LineEnd, LineQuantity, Model, Motion, Statistic,
+    StepControl, Study, SupportRef,
 };
 
 const BASE: &str = r#"
@@ -262,9 +262,10 @@ channels = [\"rope.curvature@10 m\"]
 [figures.bending]
 channel = \"rope.bend_moment@0.0541 km\"
 [cases.a]
-published = [
+references = [
     {{ channel = \"rope.declination@120\", value = \"3 deg\", source = \"nobody\" }},
     {{ channel = \"rope.curvature@0\", value = \"0.1 m^-1\", source = \"nobody\" }},
+    {{ channel = \"rope.end_a.force_z\", statistic = \"min\", range = [\"-2 kN\", -1500], source = \"nobody\" }},
 ]
 "
     ));
@@ -290,8 +291,14 @@ published = [
             ("rope.bend_moment@54.1m", point(LineQuantity::BendMoment, 5)),
         ]
     );
-    assert_relative_eq!(case.published[0].value, 3.0, max_relative = 1e-15);
-    assert_eq!(case.published[1].value, 0.1);
+    let [declination, curvature, force] = case.references.as_slice() else {
+        panic!("three references")
+    };
+    assert_relative_eq!(declination.low, 3.0, max_relative = 1e-15);
+    assert_eq!(declination.low, declination.high);
+    assert_eq!((curvature.low, curvature.statistic), (0.1, Statistic::Mean));
+    assert_eq!((force.low, force.high), (-2000.0, -1500.0));
+    assert_eq!(force.statistic, Statistic::Min);
 }
 
 #[test]

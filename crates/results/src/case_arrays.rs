@@ -4,10 +4,10 @@ use std::path::Path;
 
 use catenix_model::{Channel, Line, LineQuantity, Model};
 
-use crate::layout::{self, RANGE_SUFFIXES, array_attributes, component, long_name};
+use crate::layout::{self, RANGE_SUFFIXES, RUN_SUFFIXES, array_attributes, component, long_name};
 use crate::series::Series;
 use crate::zarr::{Array, ArrayShape, Attributes, FloatKind, Group};
-use crate::{RangeGraph, StoreError};
+use crate::{Extremes, RangeGraph, StoreError};
 
 /// Most rows of a history in one chunk.
 const HISTORY_CHUNK_ROWS: usize = 4096;
@@ -187,6 +187,14 @@ impl LineArrays {
         }
     }
 
+    /// One quantity out of extremes of (quantities x nodes).
+    pub(crate) fn extremes_of(&self, extremes: &Extremes, quantity: LineQuantity) -> Extremes {
+        Extremes {
+            min: self.part(&extremes.min, quantity).to_vec(),
+            max: self.part(&extremes.max, quantity).to_vec(),
+        }
+    }
+
     /// Writes the static state: (quantities x nodes).
     pub(crate) fn write_static(&self, values: &[f64]) -> Result<(), StoreError> {
         for quantity in self.quantities() {
@@ -210,6 +218,22 @@ impl LineArrays {
                 "{}, {suffix} over the statistics window",
                 long_name(quantity)
             );
+            self.write_vector(&name, quantity, &text, curve)?;
+        }
+        Ok(())
+    }
+
+    /// Writes the two curves of the extremes over the whole run.
+    pub(crate) fn write_run_extremes(
+        &self,
+        quantity: LineQuantity,
+        extremes: &Extremes,
+    ) -> Result<(), StoreError> {
+        let words = ["smallest", "largest"];
+        let curves = [&extremes.min, &extremes.max];
+        for ((suffix, word), curve) in RUN_SUFFIXES.into_iter().zip(words).zip(curves) {
+            let name = format!("{}_{suffix}", quantity.name());
+            let text = format!("{}, {word} over the whole run", long_name(quantity));
             self.write_vector(&name, quantity, &text, curve)?;
         }
         Ok(())

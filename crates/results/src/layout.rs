@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use catenix_model::{LineQuantity, LoadCase};
 
-use crate::summarise::{CaseLayout, LineLayout, PublishedLayout};
+use crate::summarise::{CaseLayout, LineLayout, ReferenceLayout};
 use crate::zarr::Attributes;
 
 /// Format number of the stores that this version writes, and the highest that it reads.
@@ -24,6 +24,9 @@ pub(crate) const FIELD_ROWS_KEY: &str = "field_rows";
 
 /// The four arrays of a range graph, as suffixes of the quantity's name.
 pub(crate) const RANGE_SUFFIXES: [&str; 4] = ["min", "mean", "max", "std"];
+
+/// The two arrays of the extremes over the whole run, as suffixes of the quantity's name.
+pub(crate) const RUN_SUFFIXES: [&str; 2] = ["run_min", "run_max"];
 
 /// Directory of the group that holds the load cases.
 pub(crate) fn cases_path(store: &Path) -> PathBuf {
@@ -90,14 +93,16 @@ pub(crate) fn case_layout(case: &LoadCase) -> CaseLayout {
                 elements: line.element_count(),
             })
             .collect(),
-        published: case
-            .published
+        references: case
+            .references
             .iter()
-            .map(|published| PublishedLayout {
-                channel: published.channel.name.clone(),
-                unit: published.channel.unit.to_owned(),
-                value: published.value,
-                source: published.source.clone(),
+            .map(|reference| ReferenceLayout {
+                channel: reference.channel.name.clone(),
+                statistic: reference.statistic,
+                unit: reference.channel.unit.to_owned(),
+                low: reference.low,
+                high: reference.high,
+                source: reference.source.clone(),
             })
             .collect(),
     }

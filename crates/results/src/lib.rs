@@ -32,7 +32,7 @@ pub use outcome::{CaseOutcome, DynamicsFacts, StaticsFacts};
 pub use overview::{BodyOverview, CurrentOverview, LineOverview, ModelOverview, VesselOverview};
 pub use recorder::CaseRecorder;
 pub use sample::Sample;
-pub use statistics::{RangeGraph, WindowStatistics};
+pub use statistics::{Extremes, RangeGraph, WindowStatistics};
 pub use store::{Provenance, ResultStore, StoredFigure};
 pub use store_reader::{Field, History, StoredCase, StoredStudy};
 pub use summary::{

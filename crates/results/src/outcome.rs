@@ -86,7 +86,7 @@ impl CaseOutcome {
             summary.factorisations = Some(dynamics.factorisations);
             summary.residual_n = finite(dynamics.residual_n);
             summary.energy_imbalance = finite(dynamics.energy_imbalance);
-            summary.real_time_factor = finite(dynamics.end_time_s / self.wall_seconds);
+            summary.real_time_factor = finite(dynamics.end_time_s / self.cpu_seconds);
         }
         summary
     }

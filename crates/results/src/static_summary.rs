@@ -5,12 +5,12 @@ use catenix_model::{Channel, LineQuantity, LoadCase, all_channels};
 use crate::case_arrays::node_arc_length;
 use crate::layout;
 use crate::summarise::StatisticsSource;
-use crate::{CaseOutcome, CaseSummary, Extent, RangeGraph, Sample};
+use crate::{CaseOutcome, CaseSummary, Extent, Extremes, Sample};
 
 impl CaseSummary {
     /// The summary of a static state: every minimum, mean and maximum is the static value.
     ///
-    /// Published values are left out, for they belong to the motion.
+    /// References are left out, for they belong to the motion.
     pub fn of_static_state(case: &LoadCase, sample: &impl Sample, outcome: &CaseOutcome) -> Self {
         let channels = all_channels(&case.model);
         let values = channels
@@ -33,7 +33,7 @@ impl CaseSummary {
             lines: lines.collect(),
         };
         let mut layout = layout::case_layout(case);
-        layout.published.clear();
+        layout.references.clear();
         let mut summary = outcome.summary(&case.description);
         summary.fill(&layout, &state);
         summary
@@ -63,13 +63,12 @@ impl StatisticsSource for StaticState {
         Some(Extent::of(self.values[index]))
     }
 
-    fn line(&self, line: &str, quantity: LineQuantity) -> Option<(Vec<f64>, RangeGraph)> {
+    fn line(&self, line: &str, quantity: LineQuantity) -> Option<(Vec<f64>, Extremes)> {
         let line = self.lines.iter().find(|candidate| candidate.name == line)?;
         let nodes = line.arc_length.len();
         let row = &line.values[quantity.index() * nodes..(quantity.index() + 1) * nodes];
-        Some((
-            line.arc_length.clone(),
-            RangeGraph::from_rows(&[0.0], row, nodes),
-        ))
+        let mut extremes = Extremes::new(nodes);
+        extremes.add(row);
+        Some((line.arc_length.clone(), extremes))
     }
 }

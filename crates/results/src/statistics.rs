@@ -1,6 +1,32 @@
 //! Time-weighted extremes, mean and standard deviation of many values at once.
 
-use crate::Extent;
+/// Smallest and largest of `n` values over all samples; NaN where no sample was a number.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Extremes {
+    /// Smallest sample of each value (n).
+    pub min: Vec<f64>,
+    /// Largest sample of each value (n).
+    pub max: Vec<f64>,
+}
+
+impl Extremes {
+    /// Extremes of `n` values without samples.
+    pub fn new(n: usize) -> Self {
+        Extremes {
+            min: vec![f64::NAN; n],
+            max: vec![f64::NAN; n],
+        }
+    }
+
+    /// Adds the sample `values` (n).
+    pub fn add(&mut self, values: &[f64]) {
+        for ((min, max), value) in self.min.iter_mut().zip(&mut self.max).zip(values) {
+            // The smaller of NaN and a number is the number: the first sample needs no care.
+            *min = min.min(*value);
+            *max = max.max(*value);
+        }
+    }
+}
 
 /// Running statistics of `n` values that are sampled at uneven times.
 ///
@@ -11,10 +37,8 @@ use crate::Extent;
 /// Source: docs/theory/results.md, eq. (9).
 #[derive(Debug, Clone)]
 pub struct WindowStatistics {
-    /// Smallest sample of each value (n).
-    min: Vec<f64>,
-    /// Largest sample of each value (n).
-    max: Vec<f64>,
+    /// Extremes of each value (n).
+    extremes: Extremes,
     /// Mean of each value over the committed samples (n).
     mean: Vec<f64>,
     /// Weighted sum of squared deviations from the mean (n).
@@ -33,8 +57,7 @@ impl WindowStatistics {
     /// Statistics of `n` values without samples.
     pub fn new(n: usize) -> Self {
         WindowStatistics {
-            min: vec![f64::INFINITY; n],
-            max: vec![f64::NEG_INFINITY; n],
+            extremes: Extremes::new(n),
             mean: vec![0.0; n],
             squares: vec![0.0; n],
             weight: 0.0,
@@ -58,10 +81,7 @@ impl WindowStatistics {
             }
         }
         self.pending.copy_from_slice(values);
-        for ((min, max), value) in self.min.iter_mut().zip(&mut self.max).zip(values) {
-            *min = min.min(*value);
-            *max = max.max(*value);
-        }
+        self.extremes.add(values);
     }
 
     /// Times of the first and the last sample [s]; `None` without samples.
@@ -88,17 +108,11 @@ impl WindowStatistics {
         } else {
             1.0
         });
-        let finite = |values: Vec<f64>| {
-            values
-                .into_iter()
-                .map(|v| if v.is_finite() { v } else { f64::NAN })
-                .collect()
-        };
         let weight = all.weight;
         RangeGraph {
-            min: finite(all.min),
+            min: all.extremes.min,
             mean: all.mean,
-            max: finite(all.max),
+            max: all.extremes.max,
             std: all
                 .squares
                 .iter()
@@ -146,16 +160,6 @@ impl RangeGraph {
         }
         statistics.range_graph()
     }
-
-    /// Minimum, mean and maximum of the value at `index`.
-    pub fn extent(&self, index: usize) -> Extent {
-        // Adding zero turns -0 into 0, which reads better.
-        Extent {
-            min: self.min[index] + 0.0,
-            mean: self.mean[index] + 0.0,
-            max: self.max[index] + 0.0,
-        }
-    }
 }
 
 #[cfg(test)]
@@ -187,16 +191,20 @@ mod tests {
     #[test]
     fn one_sample_is_its_own_mean_and_none_is_nan() {
         let graph = RangeGraph::from_rows(&[5.0], &[2.0, f64::NAN], 2);
-        assert_eq!(
-            graph.extent(0),
-            Extent {
-                min: 2.0,
-                mean: 2.0,
-                max: 2.0
-            }
-        );
+        assert_eq!((graph.min[0], graph.mean[0], graph.max[0]), (2.0, 2.0, 2.0));
         assert_eq!(graph.std[0], 0.0);
         assert!(graph.mean[1].is_nan() && graph.min[1].is_nan());
         assert!(WindowStatistics::new(1).range_graph().mean[0].is_nan());
+    }
+
+    #[test]
+    fn extremes_are_over_all_samples_and_skip_what_is_no_number() {
+        let mut extremes = Extremes::new(3);
+        assert!(extremes.min[0].is_nan());
+        extremes.add(&[1.0, f64::NAN, f64::NAN]);
+        extremes.add(&[-2.0, 5.0, f64::NAN]);
+        assert_eq!((extremes.min[0], extremes.max[0]), (-2.0, 1.0));
+        assert_eq!((extremes.min[1], extremes.max[1]), (5.0, 5.0));
+        assert!(extremes.min[2].is_nan() && extremes.max[2].is_nan());
     }
 }

@@ -6,13 +6,15 @@ use std::path::{Path, PathBuf};
 use catenix_model::LineQuantity;
 use serde_json::Value;
 
-use crate::layout::{self, FORMAT_KEY, RANGE_SUFFIXES, STORE_FORMAT, STORE_NAME, component};
+use crate::layout::{
+    self, FORMAT_KEY, RANGE_SUFFIXES, RUN_SUFFIXES, STORE_FORMAT, STORE_NAME, component,
+};
 use crate::store::StoredFigure;
 use crate::stored_statistics::StoredStatistics;
 use crate::summarise::CaseLayout;
 use crate::summary::Status;
 use crate::zarr::{Array, Attributes, Group};
-use crate::{CaseSummary, RangeGraph, StoreError, Summary};
+use crate::{CaseSummary, Extremes, RangeGraph, StoreError, Summary};
 
 /// A result store on disk, opened for reading.
 #[derive(Debug)]
@@ -239,21 +241,34 @@ impl StoredCase {
         line: &str,
         quantity: LineQuantity,
     ) -> Result<RangeGraph, StoreError> {
-        let mut curves = RANGE_SUFFIXES
-            .into_iter()
-            .map(|suffix| {
-                self.line_array(line, &format!("{}_{suffix}", quantity.name()))?
-                    .read()
-            })
-            .collect::<Result<Vec<_>, _>>()?
-            .into_iter();
-        let mut next = || curves.next().unwrap_or_default();
+        let [min, mean, max, std] = RANGE_SUFFIXES.map(|suffix| self.curve(line, quantity, suffix));
         Ok(RangeGraph {
-            min: next(),
-            mean: next(),
-            max: next(),
-            std: next(),
+            min: min?,
+            mean: mean?,
+            max: max?,
+            std: std?,
         })
+    }
+
+    /// Extremes of a quantity along a line over the whole run, of every step; there are none before
+    /// the case has ended.
+    pub fn run_extremes(&self, line: &str, quantity: LineQuantity) -> Result<Extremes, StoreError> {
+        let [min, max] = RUN_SUFFIXES.map(|suffix| self.curve(line, quantity, suffix));
+        Ok(Extremes {
+            min: min?,
+            max: max?,
+        })
+    }
+
+    /// A curve over arc length that was written at the end of the case.
+    fn curve(
+        &self,
+        line: &str,
+        quantity: LineQuantity,
+        suffix: &str,
+    ) -> Result<Vec<f64>, StoreError> {
+        self.line_array(line, &format!("{}_{suffix}", quantity.name()))?
+            .read()
     }
 
     /// Static state of a quantity along a line (n_elements + 1).
@@ -281,7 +296,27 @@ impl StoredCase {
         })
     }
 
-    /// Statistics of the stored rows of the last `window_s` seconds.
+    /// Extremes of a quantity along a line over the stored rows, of which there may be more than fit
+    /// into memory at once.
+    pub(crate) fn stored_extremes(
+        &self,
+        line: &str,
+        quantity: LineQuantity,
+    ) -> Result<Extremes, StoreError> {
+        let array = self.line_array(line, quantity.name())?;
+        let (nodes, chunk_rows) = (array.shape().row_len(), array.shape().chunk_rows);
+        let rows = rows(&self.group.attributes()?, layout::FIELD_ROWS_KEY).min(array.shape().rows);
+        let mut extremes = Extremes::new(nodes);
+        for start in (0..rows).step_by(chunk_rows) {
+            let end = (start + chunk_rows).min(rows);
+            for row in array.read_rows(start, end)?.chunks_exact(nodes.max(1)) {
+                extremes.add(row);
+            }
+        }
+        Ok(extremes)
+    }
+
+    /// Statistics of the stored rows: means of the last `window_s` seconds.
     pub(crate) fn statistics_of_last(
         &self,
         window_s: f64,

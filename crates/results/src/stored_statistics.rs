@@ -2,11 +2,11 @@
 
 use catenix_model::LineQuantity;
 
-use crate::store_reader::StoredCase;
+use crate::store_reader::{History, StoredCase};
 use crate::summarise::StatisticsSource;
-use crate::{Extent, RangeGraph};
+use crate::{Extent, Extremes, RangeGraph};
 
-/// Statistics over the last stretch of a stored case.
+/// Statistics of a stored case: means over its last stretch, extremes over all of it.
 pub(crate) struct StoredStatistics<'a> {
     case: &'a StoredCase,
     /// First row of the histories in the window.
@@ -32,19 +32,43 @@ impl<'a> StoredStatistics<'a> {
     pub(crate) fn window_s(&self) -> Option<[f64; 2]> {
         self.window_s
     }
+
+    /// Mean of a channel over the window.
+    pub(crate) fn mean(&self, channel: &str) -> Option<f64> {
+        self.mean_of(&self.case.channel(channel).ok()?)
+    }
+
+    /// Range graph of a quantity along a line over the window.
+    pub(crate) fn range_graph(&self, line: &str, quantity: LineQuantity) -> Option<RangeGraph> {
+        let field = self.case.field(line, quantity, self.window_s?[0]).ok()?;
+        let nodes = field.arc_length_m.len();
+        Some(RangeGraph::from_rows(&field.times_s, &field.values, nodes))
+    }
+
+    fn mean_of(&self, history: &History) -> Option<f64> {
+        let times = history.times_s.get(self.first_row..)?;
+        let values = history.values.get(self.first_row..)?;
+        RangeGraph::from_rows(times, values, 1)
+            .mean
+            .first()
+            .copied()
+    }
 }
 
 impl StatisticsSource for StoredStatistics<'_> {
     fn channel(&self, name: &str) -> Option<Extent> {
         let history = self.case.channel(name).ok()?;
-        let times = history.times_s.get(self.first_row..)?;
-        let graph = RangeGraph::from_rows(times, history.values.get(self.first_row..)?, 1);
-        Some(graph.extent(0))
+        let mean = self.mean_of(&history)?;
+        let mut extremes = Extremes::new(1);
+        for value in &history.values {
+            extremes.add(&[*value]);
+        }
+        Some(Extent::new(extremes.min[0], mean, extremes.max[0]))
     }
 
-    fn line(&self, line: &str, quantity: LineQuantity) -> Option<(Vec<f64>, RangeGraph)> {
-        let field = self.case.field(line, quantity, self.window_s?[0]).ok()?;
-        let graph = RangeGraph::from_rows(&field.times_s, &field.values, field.arc_length_m.len());
-        Some((field.arc_length_m, graph))
+    fn line(&self, line: &str, quantity: LineQuantity) -> Option<(Vec<f64>, Extremes)> {
+        let arc_length = self.case.arc_length_m(line).ok()?;
+        let extremes = self.case.stored_extremes(line, quantity).ok()?;
+        Some((arc_length, extremes))
     }
 }

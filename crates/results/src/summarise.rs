@@ -1,10 +1,10 @@
 //! Makes the summary of a case out of statistics, wherever these come from.
 
-use catenix_model::{Axis, LineQuantity};
+use catenix_model::{Axis, LineQuantity, Statistic};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    BodySummary, CaseSummary, Comparison, EndSummary, Extent, LineSummary, Located, RangeGraph,
+    BodySummary, CaseSummary, Comparison, EndSummary, Extent, Extremes, LineSummary, Located,
     Status,
 };
 
@@ -17,7 +17,7 @@ pub(crate) struct CaseLayout {
     /// Name of each body and of the vessel that its offset is taken against.
     pub(crate) bodies: Vec<(String, Option<String>)>,
     pub(crate) lines: Vec<LineLayout>,
-    pub(crate) published: Vec<PublishedLayout>,
+    pub(crate) references: Vec<ReferenceLayout>,
 }
 
 /// A line in [`CaseLayout`].
@@ -28,25 +28,28 @@ pub(crate) struct LineLayout {
     pub(crate) elements: usize,
 }
 
-/// A published value in [`CaseLayout`].
+/// A reference in [`CaseLayout`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct PublishedLayout {
+pub(crate) struct ReferenceLayout {
     pub(crate) channel: String,
+    pub(crate) statistic: Statistic,
     pub(crate) unit: String,
-    pub(crate) value: f64,
+    pub(crate) low: f64,
+    pub(crate) high: f64,
     pub(crate) source: String,
 }
 
 /// Where a summary takes its statistics from.
 pub(crate) trait StatisticsSource {
-    /// Statistics of a channel; `None` when there are none.
+    /// Mean over the window and extremes over the run of a channel; `None` when there are none.
     fn channel(&self, name: &str) -> Option<Extent>;
-    /// Arc length and range graph of a quantity along a line; `None` when there is none.
-    fn line(&self, line: &str, quantity: LineQuantity) -> Option<(Vec<f64>, RangeGraph)>;
+    /// Arc length of the nodes of a line and extremes over the run of a quantity there; `None` when
+    /// there are none.
+    fn line(&self, line: &str, quantity: LineQuantity) -> Option<(Vec<f64>, Extremes)>;
 }
 
 impl CaseSummary {
-    /// Fills bodies, lines and published values from statistics.
+    /// Fills bodies, lines and comparisons from statistics.
     pub(crate) fn fill(&mut self, layout: &CaseLayout, source: &dyn StatisticsSource) {
         self.description = layout.description.clone();
         self.bodies = layout
@@ -59,14 +62,14 @@ impl CaseSummary {
             .iter()
             .map(|line| (line.name.clone(), line_summary(line, source)))
             .collect();
-        self.published = layout
-            .published
+        self.references = layout
+            .references
             .iter()
-            .map(|value| comparison(value, source))
+            .map(|reference| comparison(reference, source))
             .collect();
         if self.status != Status::Complete {
-            // A mean over another stretch of the motion is not what was published.
-            for comparison in &mut self.published {
+            // References are about the whole motion, not about a part of it.
+            for comparison in &mut self.references {
                 comparison.computed = None;
                 comparison.difference = None;
             }
@@ -113,8 +116,8 @@ fn line_summary(line: &LineLayout, source: &dyn StatisticsSource) -> LineSummary
     };
     let tension = source.line(&line.name, LineQuantity::EffectiveTension);
     let largest = |quantity| {
-        let (arc_length, graph) = source.line(&line.name, quantity)?;
-        locate(&arc_length, &graph.max, f64::max)
+        let (arc_length, extremes) = source.line(&line.name, quantity)?;
+        locate(&arc_length, &extremes.max, f64::max)
     };
     LineSummary {
         length_m: line.length_m,
@@ -123,10 +126,10 @@ fn line_summary(line: &LineLayout, source: &dyn StatisticsSource) -> LineSummary
         end_b: end("end_b"),
         min_effective_tension_n: tension
             .as_ref()
-            .and_then(|(arc_length, graph)| locate(arc_length, &graph.min, f64::min)),
+            .and_then(|(arc_length, extremes)| locate(arc_length, &extremes.min, f64::min)),
         max_effective_tension_n: tension
             .as_ref()
-            .and_then(|(arc_length, graph)| locate(arc_length, &graph.max, f64::max)),
+            .and_then(|(arc_length, extremes)| locate(arc_length, &extremes.max, f64::max)),
         max_bend_moment_n_m: largest(LineQuantity::BendMoment),
         max_curvature_1_m: largest(LineQuantity::Curvature),
         max_von_mises_stress_pa: largest(LineQuantity::VonMisesStress),
@@ -147,14 +150,24 @@ fn locate(arc_length: &[f64], values: &[f64], choose: fn(f64, f64) -> f64) -> Op
     })
 }
 
-fn comparison(published: &PublishedLayout, source: &dyn StatisticsSource) -> Comparison {
-    let computed = mean(source, &published.channel);
+fn comparison(reference: &ReferenceLayout, source: &dyn StatisticsSource) -> Comparison {
+    let computed = source
+        .channel(&reference.channel)
+        .map(|extent| match reference.statistic {
+            Statistic::Mean => extent.mean,
+            Statistic::Min => extent.min,
+            Statistic::Max => extent.max,
+        })
+        .filter(|value| value.is_finite());
     Comparison {
-        channel: published.channel.clone(),
-        unit: published.unit.clone(),
-        published: published.value,
+        channel: reference.channel.clone(),
+        statistic: reference.statistic,
+        unit: reference.unit.clone(),
+        low: reference.low,
+        high: reference.high,
         computed,
-        difference: computed.map(|computed| computed - published.value),
-        source: published.source.clone(),
+        // Zero inside the range, else the signed distance from its nearer end.
+        difference: computed.map(|value| value - value.max(reference.low).min(reference.high)),
+        source: reference.source.clone(),
     }
 }

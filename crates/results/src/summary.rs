@@ -3,6 +3,7 @@
 //! The keys are a public interface, described in docs/results.md: names carry their unit, a number
 //! that does not exist is null, and keys are added but not renamed.
 
+use catenix_model::Statistic;
 use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -57,16 +58,16 @@ impl Status {
     }
 }
 
-/// Minimum, mean and maximum over the statistics window.
+/// Minimum and maximum over the whole run, and mean over the statistics window.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Extent {
-    /// Smallest value.
+    /// Smallest value over the whole run, t = 0 included.
     #[serde(deserialize_with = "null_as_nan")]
     pub min: f64,
-    /// Mean over time.
+    /// Mean over the statistics window.
     #[serde(deserialize_with = "null_as_nan")]
     pub mean: f64,
-    /// Largest value.
+    /// Largest value over the whole run, t = 0 included.
     #[serde(deserialize_with = "null_as_nan")]
     pub max: f64,
 }
@@ -81,15 +82,20 @@ impl Extent {
 
     /// The extent of one value.
     pub fn of(value: f64) -> Self {
+        Extent::new(value, value, value)
+    }
+
+    pub(crate) fn new(min: f64, mean: f64, max: f64) -> Self {
+        // Adding zero turns -0 into 0, which reads better.
         Extent {
-            min: value,
-            mean: value,
-            max: value,
+            min: min + 0.0,
+            mean: mean + 0.0,
+            max: max + 0.0,
         }
     }
 }
 
-/// A value and where along its line it occurs.
+/// An extreme over the whole run and where along its line it occurs.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Located {
     /// The value, in the unit that the key names.
@@ -133,14 +139,14 @@ pub struct CaseSummary {
     pub warnings: Vec<String>,
     /// Simulated time that was reached [s]; null when only statics ran.
     pub simulated_s: Option<f64>,
-    /// First and last time of the window over which means and extremes are taken [s].
+    /// First and last time of the window over which means are taken [s].
     pub window_s: Option<[f64; 2]>,
     /// Bodies by name.
     pub bodies: IndexMap<String, BodySummary>,
     /// Lines by name.
     pub lines: IndexMap<String, LineSummary>,
-    /// Published figures beside the computed ones.
-    pub published: Vec<Comparison>,
+    /// Results from elsewhere beside the computed ones.
+    pub references: Vec<Comparison>,
     /// Iterations of the static solution.
     pub static_iterations: Option<usize>,
     /// Largest residual force of the static solution [N].
@@ -161,7 +167,7 @@ pub struct CaseSummary {
     pub cpu_seconds: Option<f64>,
     /// Elapsed time of the case [s].
     pub wall_seconds: Option<f64>,
-    /// Simulated time over elapsed time [-].
+    /// Simulated time over processor time [-]: what the case costs, however busy the machine is.
     pub real_time_factor: Option<f64>,
 }
 
@@ -206,19 +212,19 @@ pub struct LineSummary {
     pub end_a: EndSummary,
     /// What the line does to its support at end B.
     pub end_b: EndSummary,
-    /// Smallest effective tension over the window and the line [N].
+    /// Smallest effective tension over the run and the line [N].
     pub min_effective_tension_n: Option<Located>,
-    /// Largest effective tension over the window and the line [N].
+    /// Largest effective tension over the run and the line [N].
     pub max_effective_tension_n: Option<Located>,
-    /// Largest bending moment over the window and the line [N m].
+    /// Largest bending moment over the run and the line [N m].
     pub max_bend_moment_n_m: Option<Located>,
-    /// Largest curvature over the window and the line [1/m].
+    /// Largest curvature over the run and the line [1/m].
     pub max_curvature_1_m: Option<Located>,
-    /// Largest von Mises stress over the window and the line [Pa]; null without a wall.
+    /// Largest von Mises stress over the run and the line [Pa]; null without a wall.
     pub max_von_mises_stress_pa: Option<Located>,
 }
 
-/// Force and direction at an end of a line, over the window.
+/// Force and direction at an end of a line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EndSummary {
     /// Force of the line on its support, global x [N].
@@ -233,20 +239,24 @@ pub struct EndSummary {
     pub declination_deg: Extent,
 }
 
-/// A published figure and the computed one.
+/// A result from elsewhere and the computed one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
-    /// Channel whose mean over the window is compared.
+    /// Channel that is compared.
     pub channel: String,
-    /// Unit of the three numbers.
+    /// What of the channel: mean over the window, or an extreme over the whole run.
+    pub statistic: Statistic,
+    /// Unit of the numbers.
     pub unit: String,
-    /// Published value.
-    pub published: f64,
-    /// Computed mean; null when the case did not get that far.
+    /// Lower end of the reference.
+    pub low: f64,
+    /// Upper end of the reference; the lower one when it is a single value.
+    pub high: f64,
+    /// The computed number; null unless the case is complete.
     pub computed: Option<f64>,
-    /// Computed less published.
+    /// Zero inside the range, else computed less the nearer end.
     pub difference: Option<f64>,
-    /// Where it was published.
+    /// Where the reference is from.
     pub source: String,
 }
 
@@ -262,7 +272,7 @@ impl CaseSummary {
             window_s: None,
             bodies: IndexMap::new(),
             lines: IndexMap::new(),
-            published: Vec::new(),
+            references: Vec::new(),
             static_iterations: None,
             static_residual_n: None,
             steps: None,

@@ -45,6 +45,8 @@ def check_complete(store: Path) -> None:
         np.testing.assert_array_equal(line[f"{quantity}_min"], line_value(quantity, node, 12.0))
         np.testing.assert_allclose(line[f"{quantity}_mean"], line_value(quantity, node, 16.0))
         np.testing.assert_array_equal(line[f"{quantity}_max"], line_value(quantity, node, 20.0))
+        np.testing.assert_array_equal(line[f"{quantity}_run_min"], line_value(quantity, node, 0.0))
+        np.testing.assert_array_equal(line[f"{quantity}_run_max"], line_value(quantity, node, 20.0))
         np.testing.assert_array_equal(line[f"static_{quantity}"], line_value(quantity, node, 0.0))
         np.testing.assert_allclose(line[f"{quantity}_std"], 8.0 / 12.0**0.5, rtol=1e-3)
 

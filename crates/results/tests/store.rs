@@ -41,6 +41,9 @@ fn a_complete_run_reads_back_as_it_was_written() {
     // A ramp of 8 s has the standard deviation 8 / sqrt(12); the trapezoidal rule on 32 steps is
     // off by a part in 32^2.
     assert!((graph.std[0] / (WINDOW_S / 12.0_f64.sqrt()) - 1.0).abs() < 1e-3);
+    let run = case.run_extremes("pipe", tension).unwrap();
+    assert_eq!(run.min[1], line_value(tension.index(), 1, 0.0));
+    assert_eq!(run.max[1], line_value(tension.index(), 1, DURATION_S));
     assert_eq!(
         case.static_state("pipe", tension).unwrap()[3],
         line_value(tension.index(), 3, 0.0)
@@ -48,7 +51,7 @@ fn a_complete_run_reads_back_as_it_was_written() {
 }
 
 #[test]
-fn the_summary_reports_means_over_the_window() {
+fn the_summary_reports_means_over_the_window_and_extremes_over_the_run() {
     let dir = tempfile::tempdir().unwrap();
     let summary = write_store(dir.path(), &study(&["a"]), DURATION_S, Status::Complete);
     let case = &summary.cases["a"];
@@ -56,11 +59,34 @@ fn the_summary_reports_means_over_the_window() {
     // Mean of -10 - t over 12 to 20 s.
     assert!((case.bodies["buffer"].offset_x_m.unwrap() + 26.0).abs() < 1e-12);
     let force = case.lines["pipe"].end_b.force_x_n;
-    assert_eq!((force.min, force.max), (2120.0, 2200.0));
-    assert!((case.published[0].difference.unwrap() + 1.0).abs() < 1e-12);
+    assert_eq!((force.min, force.max), (2000.0, 2200.0));
+    assert!((force.mean - 2160.0).abs() < 1e-9);
+    let lowest = case.lines["pipe"].min_effective_tension_n.unwrap();
+    assert_eq!((lowest.value, lowest.arc_length_m), (3000.0, 0.0));
     let highest = case.lines["pipe"].max_effective_tension_n.unwrap();
     assert_eq!((highest.value, highest.arc_length_m), (3320.0, 30.0));
-    assert_eq!(case.real_time_factor, Some(80.0));
+    // 20 s in 0.5 s of processor time; the quarter of a second that elapsed does not matter.
+    assert_eq!(case.real_time_factor, Some(40.0));
+}
+
+#[test]
+fn references_are_compared_with_the_statistic_that_they_name() {
+    let dir = tempfile::tempdir().unwrap();
+    let summary = write_store(dir.path(), &study(&["a"]), DURATION_S, Status::Complete);
+    let [mean, min, max] = summary.cases["a"].references.as_slice() else {
+        panic!("three references")
+    };
+    // The offset is -10 - t: a mean of -26 over 12 to 20 s against a single value of -25, a minimum
+    // of -30 inside its range, a maximum of -10 at the start, two above the end of its range.
+    assert!((mean.difference.unwrap() + 1.0).abs() < 1e-12);
+    assert_eq!((min.computed, min.difference), (Some(-30.0), Some(0.0)));
+    assert_eq!((max.computed, max.difference), (Some(-10.0), Some(2.0)));
+
+    let summary = write_store(dir.path(), &study(&["a"]), 10.0, Status::Interrupted);
+    for reference in &summary.cases["a"].references {
+        // Half a motion has no mean and no extremes of the whole one.
+        assert_eq!((reference.computed, reference.difference), (None, None));
+    }
 }
 
 #[test]
@@ -70,6 +96,10 @@ fn an_interrupted_run_reports_the_stretch_that_it_reached() {
     let case = &summary.cases["a"];
     assert_eq!(case.window_s, Some([2.0, 10.0]));
     assert!((case.bodies["buffer"].offset_x_m.unwrap() + 16.0).abs() < 1e-12);
+    let force = case.lines["pipe"].end_b.force_x_n;
+    assert_eq!((force.min, force.max), (2000.0, 2100.0));
+    let highest = case.lines["pipe"].max_effective_tension_n.unwrap();
+    assert_eq!(highest.value, 3310.0);
     let stored = StoredStudy::open(dir.path()).unwrap();
     assert_eq!(stored.summary().unwrap(), summary);
     let case = stored.case("a").unwrap();
@@ -105,6 +135,13 @@ fn a_killed_run_keeps_what_was_flushed() {
     assert_eq!(summary.cases["a"].status, Status::Running);
     assert_eq!(summary.cases["a"].simulated_s, Some(10.0));
     assert!((summary.cases["a"].bodies["buffer"].offset_x_m.unwrap() + 16.0).abs() < 1e-12);
+    let pipe = &summary.cases["a"].lines["pipe"];
+    assert_eq!(
+        (pipe.end_a.force_x_n.min, pipe.end_a.force_x_n.max),
+        (1000.0, 1100.0)
+    );
+    assert_eq!(pipe.min_effective_tension_n.unwrap().value, 3000.0);
+    assert_eq!(pipe.max_effective_tension_n.unwrap().value, 3310.0);
     assert_eq!(summary.cases["b"].status, Status::Pending);
     assert!(summary.cases["b"].lines.is_empty());
 }

@@ -29,8 +29,8 @@ pub(crate) struct CaseReport<'a> {
     pub(crate) description: &'a str,
     #[serde(flatten)]
     pub(crate) overview: ModelOverview,
-    /// Number of published values that the case is compared with.
-    pub(crate) published: usize,
+    /// Number of references that the case is compared with.
+    pub(crate) references: usize,
 }
 
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, Failure> {
@@ -46,7 +46,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<Exit, Failure> {
         let report = CaseReport {
             description: &case.description,
             overview: ModelOverview::new(&case.model),
-            published: case.published.len(),
+            references: case.references.len(),
         };
         (case.name.as_str(), report)
     });

@@ -3,6 +3,7 @@
 mod check;
 mod grid;
 mod number;
+mod references;
 mod statics;
 mod summary;
 

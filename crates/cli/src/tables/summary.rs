@@ -2,28 +2,30 @@
 
 use std::path::{Path, PathBuf};
 
-use catenix_results::{CaseSummary, EndSummary, Extent, LineSummary, Status, Summary};
+use catenix_results::{
+    BodySummary, CaseSummary, EndSummary, Extent, LineSummary, Located, Status, Summary,
+};
 
 use super::grid::Grid;
-use super::number::{count, fixed, maybe, number};
+use super::number::{count, fixed, maybe};
+use super::references::references_text;
 use super::{CASES_PER_TABLE, heading, paragraph, remark};
 
-/// Published against computed figures, then results and solver statistics of each case.
+/// Computed beside references, then results and solver statistics of each case.
 pub(crate) fn summary_text(summary: &Summary) -> String {
     let mut text = heading(&summary.title);
     if summary.status != Status::Complete {
         text.push_str(&format!("{}\n", status_sentence(summary.status)));
     }
-    let compared = published(summary);
-    if !compared.is_empty() {
-        text.push_str(&compared);
+    let cases: Vec<(&String, &CaseSummary)> = summary.cases.iter().collect();
+    for cases in cases.chunks(CASES_PER_TABLE) {
+        text.push_str(&references_text(cases));
     }
     if !summary.note.is_empty() {
         text.push('\n');
         text.push_str(&remark(&summary.note));
     }
     text.push('\n');
-    let cases: Vec<(&String, &CaseSummary)> = summary.cases.iter().collect();
     for cases in cases.chunks(CASES_PER_TABLE) {
         text.push_str(&results(cases));
         text.push('\n');
@@ -87,44 +89,11 @@ fn status_sentence(status: Status) -> &'static str {
     }
 }
 
-fn published(summary: &Summary) -> String {
-    let mut grid = Grid::new(&[0, 1, 6]);
-    let mut any = false;
-    grid.header([
-        "case",
-        "result",
-        "unit",
-        "published",
-        "computed",
-        "difference",
-        "source",
-    ]);
-    for (name, case) in &summary.cases {
-        for value in &case.published {
-            any = true;
-            grid.row([
-                name.clone(),
-                value.channel.clone(),
-                value.unit.clone(),
-                number(value.published),
-                maybe(value.computed),
-                maybe(value.difference),
-                value.source.clone(),
-            ]);
-        }
-    }
-    if any { grid.text() } else { String::new() }
-}
-
-/// Results with the cases beside each other.
+/// Results with the cases beside each other: means, extremes, the solver's account.
 fn results(cases: &[(&String, &CaseSummary)]) -> String {
     let mut grid = Grid::new(&[0, 1]);
     let names = cases.iter().map(|(name, _)| (*name).clone());
-    grid.header(
-        [window_label(cases), "unit".to_owned()]
-            .into_iter()
-            .chain(names),
-    );
+    grid.header(["".to_owned(), "unit".to_owned()].into_iter().chain(names));
     let mut rows = CaseRows {
         grid: &mut grid,
         cases,
@@ -134,62 +103,12 @@ fn results(cases: &[(&String, &CaseSummary)]) -> String {
         .iter()
         .map(|(_, case)| *case)
         .find(|case| !case.lines.is_empty());
-    for name in model.iter().flat_map(|case| case.bodies.keys()) {
-        let body = |case: &CaseSummary| case.bodies.get(name).cloned();
-        rows.add(&format!("{name} offset x"), "m", |case| {
-            fixed(body(case).and_then(|body| body.offset_x_m), 2)
-        });
-        rows.add(&format!("{name} offset y"), "m", |case| {
-            fixed(body(case).and_then(|body| body.offset_y_m), 2)
-        });
-    }
-    for name in model.iter().flat_map(|case| case.lines.keys()) {
-        rows.grid.group(name.as_str());
-        for (label, end) in [
-            ("end A", end_a as fn(&LineSummary) -> &EndSummary),
-            ("end B", end_b),
-        ] {
-            let mut force = |axis: &str, value: fn(&EndSummary) -> Extent| {
-                rows.add(&format!("  {label} force {axis}, mean"), "kN", |case| {
-                    fixed(
-                        case.lines
-                            .get(name)
-                            .map(|line| value(end(line)).mean * 1e-3),
-                        2,
-                    )
-                });
-            };
-            force("x", |end| end.force_x_n);
-            force("y", |end| end.force_y_n);
-            force("z", |end| end.force_z_n);
-            let mut tension = |what: &str, value: fn(Extent) -> f64| {
-                rows.add(&format!("  {label} tension, {what}"), "kN", |case| {
-                    let line = case.lines.get(name);
-                    fixed(
-                        line.map(|line| value(end(line).effective_tension_n) * 1e-3),
-                        1,
-                    )
-                });
-            };
-            tension("least", |extent| extent.min);
-            tension("largest", |extent| extent.max);
-        }
-        rows.add("  whole line tension, least", "kN", |case| {
-            let line = case.lines.get(name);
-            fixed(
-                line.and_then(|l| l.min_effective_tension_n)
-                    .map(|t| t.value * 1e-3),
-                1,
-            )
-        });
-        rows.add("  whole line tension, largest", "kN", |case| {
-            let line = case.lines.get(name);
-            fixed(
-                line.and_then(|l| l.max_effective_tension_n)
-                    .map(|t| t.value * 1e-3),
-                1,
-            )
-        });
+    if let Some(model) = model {
+        rows.grid.group(format!("mean {}", mean_time(cases)));
+        rows.add_means(model);
+        rows.grid
+            .group(format!("min and max {}", extremes_time(cases)));
+        rows.add_extremes(model);
     }
     rows.grid.group("solver");
     rows.add("  status", "", |case| case.status.word().to_owned());
@@ -208,6 +127,15 @@ fn results(cases: &[(&String, &CaseSummary)]) -> String {
     grid.text()
 }
 
+/// One of the located extremes of a line.
+type LineExtreme = fn(&LineSummary) -> Option<Located>;
+
+/// One of the ends of a line.
+type LineEndOf = fn(&LineSummary) -> &EndSummary;
+
+/// The ends of a line with their names.
+const ENDS: [(&str, LineEndOf); 2] = [("end A", end_a), ("end B", end_b)];
+
 /// Adds rows with one cell per case.
 struct CaseRows<'a> {
     grid: &'a mut Grid,
@@ -215,6 +143,69 @@ struct CaseRows<'a> {
 }
 
 impl CaseRows<'_> {
+    fn add_means(&mut self, model: &CaseSummary) {
+        for name in model.bodies.keys() {
+            let mut offset = |axis: &str, value: fn(&BodySummary) -> Option<f64>| {
+                self.add(&format!("  {name} offset {axis}"), "m", |case| {
+                    fixed(case.bodies.get(name).and_then(value), 2)
+                });
+            };
+            offset("x", |body| body.offset_x_m);
+            offset("y", |body| body.offset_y_m);
+        }
+        for name in model.lines.keys() {
+            for (label, end) in ENDS {
+                let mut force = |axis: &str, value: fn(&EndSummary) -> Extent| {
+                    let label = format!("  {name} {label} force {axis}");
+                    self.add(&label, "kN", |case| {
+                        let line = case.lines.get(name);
+                        fixed(line.map(|line| value(end(line)).mean * 1e-3), 2)
+                    });
+                };
+                force("x", |end| end.force_x_n);
+                force("y", |end| end.force_y_n);
+                force("z", |end| end.force_z_n);
+            }
+        }
+    }
+
+    fn add_extremes(&mut self, model: &CaseSummary) {
+        for (name, line) in &model.lines {
+            for (label, end) in ENDS {
+                let mut tension = |what: &str, value: fn(Extent) -> f64| {
+                    let label = format!("  {name} {label} tension, {what}");
+                    self.add(&label, "kN", |case| {
+                        let line = case.lines.get(name);
+                        let tension = line.map(|line| end(line).effective_tension_n);
+                        fixed(tension.map(|tension| value(tension) * 1e-3), 1)
+                    });
+                };
+                tension("min", |extent| extent.min);
+                tension("max", |extent| extent.max);
+            }
+            let mut located = |what: &str, unit: &str, scale: f64, value: LineExtreme| {
+                self.add(&format!("  {name} {what}"), unit, |case| {
+                    let located = case.lines.get(name).and_then(value);
+                    fixed(located.map(|located| located.value * scale), 1)
+                });
+            };
+            located("tension, min", "kN", 1e-3, |line| {
+                line.min_effective_tension_n
+            });
+            located("tension, max", "kN", 1e-3, |line| {
+                line.max_effective_tension_n
+            });
+            located("bending moment, max", "kN m", 1e-3, |line| {
+                line.max_bend_moment_n_m
+            });
+            if line.max_von_mises_stress_pa.is_some() {
+                located("stress, max", "MPa", 1e-6, |line| {
+                    line.max_von_mises_stress_pa
+                });
+            }
+        }
+    }
+
     fn add(&mut self, label: &str, unit: &str, value: impl Fn(&CaseSummary) -> String) {
         let head = [label.to_owned(), unit.to_owned()];
         self.grid.row(
@@ -232,22 +223,32 @@ fn end_b(line: &LineSummary) -> &EndSummary {
     &line.end_b
 }
 
-/// Over which time the results are taken.
-fn window_label(cases: &[(&String, &CaseSummary)]) -> String {
-    let lengths: Vec<f64> = cases
+/// Over which time the means are taken.
+pub(super) fn mean_time(cases: &[(&String, &CaseSummary)]) -> String {
+    let complete = cases
         .iter()
-        .filter(|(_, case)| case.status == Status::Complete)
+        .all(|(_, case)| case.status == Status::Complete);
+    let mut lengths = cases
+        .iter()
         .filter_map(|(_, case)| case.window_s)
-        .map(|[start, end]| end - start)
-        .collect();
-    match lengths.first() {
-        Some(first)
-            if lengths
-                .iter()
-                .all(|length| (length - first).abs() < 1e-6 * first) =>
-        {
-            format!("over the last {first:.6} s").replace(".000000", "")
+        .map(|[start, end]| end - start);
+    match lengths.next() {
+        Some(first) if complete && lengths.all(|length| (length - first).abs() <= 1e-6 * first) => {
+            // Differences of times have rounding errors in their last digits.
+            let length = format!("{first:.6}");
+            let length = length.trim_end_matches('0').trim_end_matches('.');
+            format!("over the last {length} s")
         }
-        _ => String::new(),
+        _ => "over the statistics window or as much as was computed".to_owned(),
+    }
+}
+
+/// Over which time the extremes are taken.
+pub(super) fn extremes_time(cases: &[(&String, &CaseSummary)]) -> &'static str {
+    let complete = |(_, case): &(&String, &CaseSummary)| case.status == Status::Complete;
+    if cases.iter().all(complete) {
+        "over the whole run"
+    } else {
+        "over all that was computed"
     }
 }

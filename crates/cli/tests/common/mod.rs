@@ -77,7 +77,10 @@ channel = "pump.offset_x"
 
 [cases.one]
 description = "as it is"
-published = [{ channel = "pump.offset_x", value = "1 m", source = "nobody" }]
+references = [
+    { channel = "pump.offset_x", value = "1 m", source = "nobody" },
+    { channel = "pipe.end_a.force_z", statistic = "max", range = ["-100 kN", "-50 kN"], source = "elsewhere" },
+]
 "#;
 
 /// A directory with the model, plus what `more` adds to it.

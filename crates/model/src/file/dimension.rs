@@ -36,7 +36,7 @@ pub(super) trait Measure {
     const ACCEPTED: &'static [Dimension];
 }
 
-/// Any dimension: the value of a published number, which its channel decides.
+/// Any dimension: the value of a reference, which its channel decides.
 #[derive(Debug, Clone)]
 pub(super) struct AnyMeasure;
 

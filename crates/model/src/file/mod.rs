@@ -105,12 +105,12 @@ fn study(
             value: NodeValue::Table(entries),
             ..Node::implied("", document, false.into())
         };
-        let published = case.table.published.unwrap_or_default();
+        let references = case.table.references.unwrap_or_default();
         let resolved = ModelTable::read(&node, &mut case_log).and_then(|table| {
             resolve_case(
                 &title,
                 &table,
-                &published,
+                &references,
                 &header.figures,
                 histories,
                 &mut case_log,
@@ -149,13 +149,13 @@ fn study(
         .into_iter()
         .filter_map(|(name, description, resolved)| {
             let ResolvedCase {
-                model, published, ..
+                model, references, ..
             } = resolved?;
             Some(LoadCase {
                 name,
                 description,
                 model,
-                published,
+                references,
             })
         });
     let note = header.note.map_or_else(String::new, |note| note.value);
@@ -179,7 +179,7 @@ fn read_cases(node: Option<&Node>, log: &mut Log) -> Vec<CaseOverride> {
     let no_cases = || {
         let table = CaseTable {
             description: None,
-            published: None,
+            references: None,
             key_span: 0..0,
         };
         vec![CaseOverride {

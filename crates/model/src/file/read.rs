@@ -63,6 +63,15 @@ pub(super) struct Vector<T> {
     pub span: Span,
 }
 
+/// Two values: a range.
+#[derive(Debug, Clone)]
+pub(super) struct Pair<T> {
+    /// The two, as written.
+    pub items: [T; 2],
+    /// Where the array was written.
+    pub span: Span,
+}
+
 /// Objects that the user named, in file order.
 #[derive(Debug, Clone)]
 pub(super) struct Named<T>(pub Vec<NamedItem<T>>);
@@ -187,6 +196,7 @@ fn example_of(key: &str, shape: &Shape) -> String {
             format!("{key} = {}", words.join(" or "))
         }
         Shape::Vector(_) => format!("{key} = [\"0 m\", \"0 m\", \"0 m\"]"),
+        Shape::Pair(_) => format!("{key} = [\"-1 m\", \"1 m\"]"),
         Shape::List(_) => format!("{key} = [ ... ]"),
         Shape::Table(_) | Shape::Kinds(_) | Shape::Named(_) => format!("a table `{key}`"),
         Shape::WordOr(word, _) => format!("{key} = \"{word}\""),
@@ -328,6 +338,29 @@ impl<T: Read> Read for Vector<T> {
 
     fn shape() -> Shape {
         Shape::Vector(Box::new(T::shape()))
+    }
+}
+
+impl<T: Read> Read for Pair<T> {
+    fn read(node: &Node, log: &mut Log) -> Option<Self> {
+        let NodeValue::Array(items) = &node.value else {
+            wrong_type(node, "an array of two values", "[low, high]", log);
+            return None;
+        };
+        let [low, high] = items.as_slice() else {
+            let message = format!("`{}` must have 2 values, but has {}", node.key, items.len());
+            log.error(Code::WrongType, &node.span, message, "write [low, high]");
+            return None;
+        };
+        let (low, high) = (T::read(low, log), T::read(high, log));
+        Some(Pair {
+            items: [low?, high?],
+            span: node.span.clone(),
+        })
+    }
+
+    fn shape() -> Shape {
+        Shape::Pair(Box::new(T::shape()))
     }
 }
 

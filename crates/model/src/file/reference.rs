@@ -114,6 +114,7 @@ fn describe(shape: &Shape) -> String {
             words.iter().map(word).collect::<Vec<_>>().join(", ")
         }
         Shape::Vector(item) => format!("`[x, y, z]`; each {}", lower_first(&describe(item))),
+        Shape::Pair(item) => format!("`[low, high]`; each {}", lower_first(&describe(item))),
         Shape::List(item) => format!("Array; each {}", lower_first(&describe(item))),
         Shape::Table(_) | Shape::Kinds(_) => "Table, below".to_owned(),
         Shape::Named(_) => "Tables by name, below".to_owned(),

@@ -76,12 +76,8 @@ fn schema(shape: &Shape, strictness: Strictness) -> Value {
             json!({ "oneOf": words.iter().map(option).collect::<Vec<_>>() })
         }
         // What stands in an array replaces the base's array and must be complete.
-        Shape::Vector(item) => json!({
-            "type": "array",
-            "items": schema(item, Strictness::Complete),
-            "minItems": 3,
-            "maxItems": 3,
-        }),
+        Shape::Vector(item) => array_schema(item, 3),
+        Shape::Pair(item) => array_schema(item, 2),
         Shape::List(item) => {
             json!({ "type": "array", "items": schema(item, Strictness::Complete) })
         }
@@ -108,6 +104,16 @@ fn schema(shape: &Shape, strictness: Strictness) -> Value {
             json!({ "anyOf": [{ "const": word }, schema(other, strictness)] })
         }
     }
+}
+
+/// An array of so many values.
+fn array_schema(item: &Shape, length: usize) -> Value {
+    json!({
+        "type": "array",
+        "items": schema(item, Strictness::Complete),
+        "minItems": length,
+        "maxItems": length,
+    })
 }
 
 fn table_schema(table: &TableShape, strictness: Strictness) -> Value {

@@ -24,6 +24,8 @@ pub(super) enum Shape {
     Choice(&'static [(&'static str, &'static str)]),
     /// Three values.
     Vector(Box<Shape>),
+    /// Two values, the lower one first.
+    Pair(Box<Shape>),
     /// Any number of values.
     List(Box<Shape>),
     /// A table of fixed keys.

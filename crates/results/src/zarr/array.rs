@@ -117,6 +117,11 @@ impl Array {
         })
     }
 
+    /// Shape and chunks.
+    pub(crate) fn shape(&self) -> &ArrayShape {
+        &self.shape
+    }
+
     /// Attributes, `units` among them.
     pub(crate) fn attributes(&self) -> &Attributes {
         &self.attributes

@@ -9,8 +9,8 @@ use std::path::Path;
 
 use catenix_model::{
     Axis, Body, Channel, ChannelTarget, Current, DynamicsSettings, Environment, Figure, Line,
-    LineEnd, LineType, LoadCase, Model, OutputSettings, PipeWall, PublishedValue, Section,
-    StaticsSettings, StepControl, Study, Vessel,
+    LineEnd, LineType, LoadCase, Model, OutputSettings, PipeWall, Reference, Section,
+    StaticsSettings, Statistic, StepControl, Study, Vessel,
 };
 use catenix_results::{
     CaseOutcome, DynamicsFacts, Provenance, ResultStore, Sample, StaticsFacts, Status, Summary,
@@ -92,11 +92,11 @@ pub fn study(cases: &[&str]) -> Study {
         name: (*name).to_owned(),
         description: format!("case {name}"),
         model: model(),
-        published: vec![PublishedValue {
-            channel: offset.clone(),
-            value: -25.0,
-            source: "nobody".into(),
-        }],
+        references: vec![
+            reference(&offset, Statistic::Mean, [-25.0, -25.0]),
+            reference(&offset, Statistic::Min, [-31.0, -29.0]),
+            reference(&offset, Statistic::Max, [-14.0, -12.0]),
+        ],
     };
     Study {
         title: "Synthetic".into(),
@@ -107,6 +107,16 @@ pub fn study(cases: &[&str]) -> Study {
             title: "Offset".into(),
             channel: offset,
         }],
+    }
+}
+
+fn reference(channel: &Channel, statistic: Statistic, [low, high]: [f64; 2]) -> Reference {
+    Reference {
+        channel: channel.clone(),
+        statistic,
+        low,
+        high,
+        source: "nobody".into(),
     }
 }
 

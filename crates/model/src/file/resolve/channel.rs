@@ -1,13 +1,12 @@
 //! Channels that the user names: recorded, drawn or compared.
 
 use crate::file::diagnostic::DiagnosticCode as Code;
-use crate::file::dimension::name_of;
 use crate::file::log::{Log, closest, one_of};
 use crate::file::read::{Named, Text};
-use crate::file::tables::{FigureTable, OutputTable, PublishedTable};
-use crate::file::units::{Powers, describe_powers, parse_quantity};
+use crate::file::tables::{FigureTable, OutputTable};
+use crate::file::units::{Powers, parse_quantity};
 use crate::output::{body_channels, line_channels, vessel_channels};
-use crate::{Channel, ChannelTarget, LineQuantity, PublishedValue};
+use crate::{Channel, ChannelTarget, LineQuantity};
 
 use super::Assembly;
 use super::line::ResolvedLine;
@@ -20,46 +19,11 @@ pub(super) fn output_channels(
     names: &Names,
     log: &mut Log,
 ) -> Vec<Channel> {
-    let references = table.channels.as_deref().unwrap_or_default();
-    references
+    let texts = table.channels.as_deref().unwrap_or_default();
+    texts
         .iter()
         .filter_map(|text| find(text, assembly, names, log))
         .collect()
-}
-
-/// Resolves published values, whose units must be those of their channels.
-pub(super) fn published(
-    tables: &[PublishedTable],
-    assembly: &Assembly,
-    names: &Names,
-    log: &mut Log,
-) -> Vec<PublishedValue> {
-    let mut values = Vec::new();
-    for table in tables {
-        let Some(channel) = find(&table.channel, assembly, names, log) else {
-            continue;
-        };
-        let (expected, si_per_unit) = unit_of(channel.unit);
-        if let Some(written) = table.value.powers
-            && written != expected
-        {
-            let found = name_of(written).map_or_else(|| describe_powers(written), str::to_owned);
-            let message = format!(
-                "`{}` is in {}, but the value is {found}",
-                channel.name, channel.unit
-            );
-            let help = format!("write the value in {}", channel.unit);
-            log.error(Code::Dimension, &table.value.span, message, help);
-            continue;
-        }
-        let value = table.value.si / si_per_unit;
-        values.push(PublishedValue {
-            channel,
-            value,
-            source: table.source.value.clone(),
-        });
-    }
-    values
 }
 
 /// Resolves the channels of the figures.
@@ -80,17 +44,13 @@ pub(super) fn is_line_point(channel: &Channel) -> bool {
     matches!(channel.target, ChannelTarget::LinePoint(..))
 }
 
-/// Powers and size of a channel's unit.
-fn unit_of(unit: &str) -> (Powers, f64) {
-    match parse_quantity(&format!("1 {unit}")) {
-        Ok(number) => (number.powers.unwrap_or_default(), number.si),
-        // Only the curvature's "1/m" is no product of units.
-        Err(_) => (Powers::new(0, -1, 0, 0), 1.0),
-    }
-}
-
 /// The channel that a text names; `None` after noting an error, or when its object is broken.
-fn find(text: &Text, assembly: &Assembly, names: &Names, log: &mut Log) -> Option<Channel> {
+pub(super) fn find(
+    text: &Text,
+    assembly: &Assembly,
+    names: &Names,
+    log: &mut Log,
+) -> Option<Channel> {
     let Some((object, quantity)) = text.value.split_once('.') else {
         let message = format!("`{}` is no channel", text.value);
         let help = "write <object>.<quantity>, for example \"buffer.offset_x\"";

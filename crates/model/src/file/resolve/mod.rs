@@ -15,13 +15,14 @@ mod line;
 mod line_type;
 mod motion;
 mod names;
+mod references;
 
-use crate::{Body, Environment, LineType, Model, OutputSettings, PublishedValue, Vessel};
+use crate::{Body, Environment, LineType, Model, OutputSettings, Reference, Vessel};
 
 use super::log::Log;
 use super::node::Span;
 use super::read::Named;
-use super::tables::{FigureTable, ModelTable, PublishedTable};
+use super::tables::{FigureTable, ModelTable, ReferenceTable};
 
 pub(super) use history::Histories;
 use line::ResolvedLine;
@@ -56,8 +57,8 @@ struct Assembly {
 pub(super) struct ResolvedCase {
     /// The model.
     pub model: Model,
-    /// Published values.
-    pub published: Vec<PublishedValue>,
+    /// What its results are compared with.
+    pub references: Vec<Reference>,
     /// Channels of the study's figures, in their order.
     pub figure_channels: Vec<crate::Channel>,
 }
@@ -66,7 +67,7 @@ pub(super) struct ResolvedCase {
 pub(super) fn resolve_case(
     title: &str,
     table: &ModelTable,
-    published: &[PublishedTable],
+    references: &[ReferenceTable],
     figures: &Named<FigureTable>,
     histories: &mut Histories,
     log: &mut Log,
@@ -120,12 +121,12 @@ pub(super) fn resolve_case(
         .as_ref()
         .map(|table| analysis::dynamics(table, &assembly.vessels, log));
     let mut channels = channel::output_channels(&table.output, &assembly, &names, log);
-    let published = channel::published(published, &assembly, &names, log);
+    let references = references::resolve(references, &assembly, &names, log);
     let figure_channels = channel::figures(figures, &assembly, &names, log);
     // Points of lines that are drawn or compared must be recorded too.
-    let used = published
+    let used = references
         .iter()
-        .map(|value| &value.channel)
+        .map(|reference| &reference.channel)
         .chain(&figure_channels);
     for used in used.filter(|channel| channel::is_line_point(channel)) {
         if !channels.contains(used) {
@@ -159,7 +160,7 @@ pub(super) fn resolve_case(
     };
     Some(ResolvedCase {
         model,
-        published,
+        references,
         figure_channels,
     })
 }

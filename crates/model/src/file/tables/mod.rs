@@ -17,5 +17,5 @@ pub(super) use line::{
 };
 pub(super) use line_type::{GeneralTable, LineTypeTable, PipeTable};
 pub(super) use motion::{DegreeChoice, HarmonicTable, LegTable, MotionTable, TowTable};
-pub(super) use output::{FigureTable, OutputTable, PublishedTable};
+pub(super) use output::{FigureTable, OutputTable, ReferenceTable, StatisticChoice};
 pub(super) use study::{CaseTable, ModelTable, StudyTable};

@@ -1,9 +1,9 @@
-//! `[output]`, `[figures.*]` and published values.
+//! `[output]`, `[figures.*]` and references.
 
-use crate::file::define::table;
+use crate::file::define::{choice, table};
 use crate::file::dimension::{AnyMeasure, Time};
 use crate::file::quantity::{Positive, Real};
-use crate::file::read::Text;
+use crate::file::read::{Pair, Text};
 
 table! {
     /// What is recorded.
@@ -31,13 +31,30 @@ table! {
 }
 
 table! {
-    /// A number from a publication that the case's result is compared with.
-    pub(super) struct PublishedTable {
-        /// Channel whose mean over the statistics window is compared.
+    /// A result from elsewhere that the case's own is compared with: of a publication, a
+    /// measurement, or other programs. It is one value or a range, in the unit of its channel.
+    pub(super) struct ReferenceTable {
+        /// Channel that is compared.
         channel: Text,
-        /// Published value.
-        value: Real<AnyMeasure>,
-        /// Where it was published.
+        /// What of the channel is compared.
+        statistic: StatisticChoice = "mean",
+        /// The value; or give `range`.
+        value: Option<Real<AnyMeasure>>,
+        /// The range, where several results differ; or give `value`.
+        range: Option<Pair<Real<AnyMeasure>>>,
+        /// Where it is from; references of one source are printed together.
         source: Text,
+    }
+}
+
+choice! {
+    /// Numbers out of a history.
+    pub(super) enum StatisticChoice {
+        /// Over the statistics window.
+        Mean = "mean",
+        /// Smallest value over the whole run.
+        Min = "min",
+        /// Largest value over the whole run.
+        Max = "max",
     }
 }

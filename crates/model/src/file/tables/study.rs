@@ -6,7 +6,7 @@ use crate::file::read::{Named, Text};
 
 use super::{
     AnchorTable, BodyTable, DynamicsTable, EnvironmentTable, FigureTable, LineTable, LineTypeTable,
-    MotionTable, OutputTable, PublishedTable, StaticsTable, VesselTable,
+    MotionTable, OutputTable, ReferenceTable, StaticsTable, VesselTable,
 };
 
 table! {
@@ -29,8 +29,8 @@ table! {
     pub(super) struct CaseTable {
         /// One sentence for tables and legends.
         description: Option<Text>,
-        /// Published numbers that the results of this case are compared with.
-        published: Option<Vec<PublishedTable>>,
+        /// Results from elsewhere that the results of this case are compared with.
+        references: Option<Vec<ReferenceTable>>,
     }
 }
 
