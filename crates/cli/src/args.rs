@@ -63,7 +63,7 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
     /// Directory for results.zarr, summary.json and figures; earlier results in it are replaced
-    /// [default: results/<name of the model file>]
+    /// [default: `results/` and the name of the model file]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
