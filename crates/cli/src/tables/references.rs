@@ -1,6 +1,6 @@
 //! Results from elsewhere beside the computed ones.
 
-use catenix_results::{CaseSummary, Comparison};
+use catenix_results::{CaseSummary, Comparison, Status};
 
 use super::grid::Grid;
 use super::number::fixed;
@@ -11,8 +11,12 @@ use super::summary::{extremes_time, mean_time};
 type Key<'a> = (&'a str, &'a str, &'static str, usize);
 
 /// The references of some load cases, one block per source; the cases stand beside each other.
-/// Empty without references.
+/// Empty where nothing is compared: without references, or before any case is complete.
 pub(crate) fn references_text(cases: &[(&String, &CaseSummary)]) -> String {
+    let mut comparisons = cases.iter().flat_map(|(_, case)| &case.references);
+    if comparisons.all(|comparison| comparison.computed.is_none()) {
+        return String::new();
+    }
     let columns: Vec<Vec<(Key<'_>, &Comparison)>> =
         cases.iter().map(|(_, case)| keyed(case)).collect();
     let mut keys: Vec<Key<'_>> = Vec::new();
@@ -28,14 +32,17 @@ pub(crate) fn references_text(cases: &[(&String, &CaseSummary)]) -> String {
             sources.push(source);
         }
     }
-    let mut text = String::new();
-    if !sources.is_empty() {
-        text.push_str("\nReferences: a mean is ");
-        text.push_str(&mean_time(cases));
-        text.push_str(", min and max are ");
-        text.push_str(extremes_time(cases));
-        text.push_str(".\n");
-    }
+    // What is compared is complete, whatever became of the other cases.
+    let complete: Vec<(&String, &CaseSummary)> = cases
+        .iter()
+        .filter(|(_, case)| case.status == Status::Complete)
+        .copied()
+        .collect();
+    let mut text = format!(
+        "\nReferences: a mean is {}, min and max are {}.\n",
+        mean_time(&complete),
+        extremes_time(&complete)
+    );
     for source in sources {
         let mut grid = Grid::new(&[0, 1]);
         let names = cases.iter().map(|(name, _)| (*name).clone());
@@ -139,8 +146,6 @@ fn decimals(largest: f64) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use catenix_results::Status;
-
     use super::*;
 
     fn comparison(json: &str) -> Comparison {
@@ -156,6 +161,7 @@ mod tests {
             "source": "two codes"}"#;
         let mut one = CaseSummary::empty("", Status::Complete);
         one.references = vec![comparison(codes), comparison(codes)];
+        one.window_s = Some([12.0, 20.0]);
         let mut two = CaseSummary::empty("", Status::Interrupted);
         two.references = vec![comparison(paper)];
         two.references[0].computed = None;
@@ -163,8 +169,7 @@ mod tests {
         let (a, b) = ("one".to_owned(), "two".to_owned());
         let text = references_text(&[(&a, &one), (&b, &two)]);
         let expected = "
-References: a mean is over the statistics window or as much as was computed, min and max are over \
-all that was computed.
+References: a mean is over the last 8 s, min and max are over the whole run.
 
 Compared with two codes
 
@@ -188,6 +193,7 @@ buoy.x, mean  m          -22.5
   difference                  -
 ";
         assert_eq!(text, expected);
+        assert_eq!(references_text(&[(&b, &two)]), "");
     }
 
     #[test]

@@ -225,30 +225,38 @@ fn end_b(line: &LineSummary) -> &EndSummary {
 
 /// Over which time the means are taken.
 pub(super) fn mean_time(cases: &[(&String, &CaseSummary)]) -> String {
-    let complete = cases
-        .iter()
-        .all(|(_, case)| case.status == Status::Complete);
     let mut lengths = cases
         .iter()
         .filter_map(|(_, case)| case.window_s)
         .map(|[start, end]| end - start);
     match lengths.next() {
-        Some(first) if complete && lengths.all(|length| (length - first).abs() <= 1e-6 * first) => {
+        Some(first) if lengths.all(|length| (length - first).abs() <= 1e-6 * first) => {
             // Differences of times have rounding errors in their last digits.
             let length = format!("{first:.6}");
             let length = length.trim_end_matches('0').trim_end_matches('.');
-            format!("over the last {length} s")
+            let of_what = if complete(cases) {
+                ""
+            } else {
+                " that were computed"
+            };
+            format!("over the last {length} s{of_what}")
         }
-        _ => "over the statistics window or as much as was computed".to_owned(),
+        _ if complete(cases) => "over the statistics window".to_owned(),
+        _ => "over the statistics window, or less where a case ended early".to_owned(),
     }
 }
 
 /// Over which time the extremes are taken.
 pub(super) fn extremes_time(cases: &[(&String, &CaseSummary)]) -> &'static str {
-    let complete = |(_, case): &(&String, &CaseSummary)| case.status == Status::Complete;
-    if cases.iter().all(complete) {
+    if complete(cases) {
         "over the whole run"
     } else {
         "over all that was computed"
     }
+}
+
+fn complete(cases: &[(&String, &CaseSummary)]) -> bool {
+    cases
+        .iter()
+        .all(|(_, case)| case.status == Status::Complete)
 }
