@@ -1,5 +1,5 @@
 //! The assembled system: flat arrays of frames and connectors, built once from a [`Model`] and
-//! never changed; everything that changes lives in the state and in a [`Workspace`].
+//! never changed; everything that changes lives in the state and in a [`SystemSolver`].
 //!
 //! Frames are numbered line by line, element by element from end A to end B, then the bodies.
 
