@@ -3,6 +3,10 @@
 mod common;
 
 use std::f64::consts::PI;
+use std::ops::ControlFlow;
+
+use catenix_engine::{StaticsError, System, solve_statics};
+use catenix_model::ChannelTarget;
 
 use common::{G, WATER, assert_near, model, run};
 
@@ -77,4 +81,43 @@ fn a_buoy_finds_the_surface_by_itself() {
     let pull = run.statics.get("pendant.end_b.force_z");
     assert!(pull < 0.0, "the line hangs from the buoy: {pull} N");
     assert_near("float", WATER * G * 2.0 * share, 500.0 * G - pull, 1.0);
+}
+
+#[test]
+fn a_hinge_about_the_vertical_leaves_a_motion_free() {
+    let boom = |axis: &str| {
+        format!(
+            r#"
+            environment.water.depth = "100 m"
+            [line_types.boom]
+            kind = "pipe"
+            outer_diameter = "0.3 m"
+            inner_diameter = "0.28 m"
+            content_density = "1025 kg/m^3"
+            [vessels.ship]
+            position = [0, 0, -5]
+            [lines.boom]
+            sections = [{{ type = "boom", length = "10 m", elements = 10 }}]
+            end_a = {{ to = "ship", joint = "hinge", direction = [1, 0, 0], axis = {axis} }}
+            "#
+        )
+    };
+    let free = System::new(&model(&boom("[0, 0, 1]"))).unwrap();
+    let refused = solve_statics(&free, &mut |_| ControlFlow::Continue(())).err();
+    let error = refused.expect("nothing holds the boom's azimuth");
+    let message = error.to_string();
+    assert!(
+        matches!(error, StaticsError::FreeMotion { .. })
+            && message.contains("line 'boom'")
+            && message.contains("along global y"),
+        "{message}"
+    );
+    // About the horizontal the weight holds it, straight down.
+    let held = System::new(&model(&boom("[0, 1, 0]"))).unwrap();
+    let hanging = solve_statics(&held, &mut |_| ControlFlow::Continue(())).unwrap();
+    let declination = hanging.view().channel(ChannelTarget::EndDeclination(0, 1));
+    assert!(
+        declination < 1e-3 && hanging.warnings.is_empty(),
+        "{declination} deg"
+    );
 }

@@ -15,8 +15,8 @@ use crate::system::{System, SystemSolver};
 
 /// Squared frequency below which a motion counts as free [rad2/s2]: a period of two days.
 const FREE: f64 = 1e-9;
-/// Squared frequency that spins are given [rad2/s2].
-const SPIN: f64 = 1e-6;
+/// Squared frequency that spins are given, over the one that counts as free.
+const SPIN: f64 = 1e3;
 /// Share of the squared motion that may be left unexplained by a rigid motion.
 const RIGID: f64 = 1e-4;
 /// Rounds of inverse iteration; each separates a free motion from the next by many decades.
@@ -68,6 +68,8 @@ impl FreeMotion {
 /// The softest motion about the equilibrium in `state`, if nothing resists it.
 pub(super) fn find(solver: &mut SystemSolver<'_>, state: &mut MotionState) -> Option<FreeMotion> {
     let n = state.configuration.len();
+    // Round-off in the matrix alone makes a free motion look as stiff as this.
+    let free = solver.system().frequency_round_off().max(FREE);
     let mut residual = vec![Vector6::zeros(); n];
     let mut mode: Vec<Vector6> = (0..n)
         .map(|k| {
@@ -88,12 +90,12 @@ pub(super) fn find(solver: &mut SystemSolver<'_>, state: &mut MotionState) -> Op
         let forces = inertia_of(solver, state, &mode, &mut residual);
         let weights = TangentWeights {
             velocity: 0.0,
-            acceleration: 0.01 * FREE,
+            acceleration: 0.01 * free,
             rotation: None,
         };
         solver.begin();
         solver.assemble(0.0, state, Some(&weights), &mut residual);
-        solver.hold_spins(state, SPIN, 0.0);
+        solver.hold_spins(state, SPIN * free, 0.0);
         let norm = dot(&mode, &forces).sqrt();
         let load: Vec<Vector6> = forces.iter().map(|f| -f / norm).collect();
         if solver.solve(&load, &mut mode).is_err() {
@@ -109,7 +111,7 @@ pub(super) fn find(solver: &mut SystemSolver<'_>, state: &mut MotionState) -> Op
     solver.begin();
     solver.assemble(0.0, state, None, &mut residual);
     let softest = 1.0 / softness;
-    if softest.abs() > FREE {
+    if softest.abs() > free {
         return None;
     }
     let (frame, motion) = mode

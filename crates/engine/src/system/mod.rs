@@ -295,6 +295,22 @@ impl System {
         FrameOwner::Body(self.model.bodies[frame - self.body_frame(0)].name.clone())
     }
 
+    /// Squared frequency that round-off in the stiffest connector amounts to [rad2/s2].
+    pub(crate) fn frequency_round_off(&self) -> f64 {
+        let stiffest = self.connectors.iter().map(|connector| {
+            let stiffness = connector.law.stiffness();
+            let lightest = [connector.first.carrier, connector.second.carrier]
+                .into_iter()
+                .filter_map(|carrier| match carrier {
+                    Carrier::Free(k) => Some(self.frames[k].mass),
+                    Carrier::Vessel(_) => None,
+                })
+                .fold(f64::INFINITY, f64::min);
+            stiffness.axial.max(stiffness.shear) / lightest
+        });
+        4.0 * f64::EPSILON * stiffest.fold(0.0, f64::max)
+    }
+
     /// Axis of a frame in its own axes: along the line, or a body's z.
     pub(crate) fn frame_axis(&self, frame: usize) -> Vector3 {
         self.frames[frame].axis

@@ -279,8 +279,8 @@ fn line_points(
 }
 
 /// Where a line with one loose end leads from the end that is held: in the direction in which a
-/// fixed joint holds it, or down (a heavy line), up (a light one under deep enough water), or
-/// along the surface.
+/// fixed joint or a hinge holds it, or down (a heavy line), up (a light one under deep enough
+/// water), or along the surface.
 fn loose_direction(
     held: &LineEnd,
     end: usize,
@@ -290,7 +290,7 @@ fn loose_direction(
     supports: &Supports,
 ) -> Vector3 {
     if let LineEnd::Connected(connection) = held
-        && connection.joint == Joint::Fixed
+        && matches!(connection.joint, Joint::Fixed | Joint::Hinge { .. })
     {
         let direction =
             supports.get(connection.to).rotation * Vector3::from(connection.direction_local);
