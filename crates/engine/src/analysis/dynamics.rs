@@ -253,7 +253,7 @@ impl Simulation<'_> {
         }
     }
 
-    /// Shows the current state, evaluated anew so that results belong to it.
+    /// Shows the current state, which is the one that the solver evaluated last.
     fn show(
         &mut self,
         observer: &mut dyn FnMut(&StepView<'_>) -> ControlFlow<()>,
