@@ -7,7 +7,7 @@ use crate::failure::{Exit, Failure};
 use crate::print;
 
 /// Whether the user wants to stop.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {

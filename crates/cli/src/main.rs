@@ -4,7 +4,6 @@
 
 mod args;
 mod commands;
-mod compute;
 mod failure;
 mod interrupt;
 mod print;

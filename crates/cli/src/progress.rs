@@ -1,6 +1,11 @@
 //! Progress bars, one per running load case, on standard error when that is a terminal.
 
+use std::cell::Cell;
+
+use catenix_study::Watch;
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::interrupt::Interrupt;
 
 /// The bars of all running cases.
 #[derive(Debug)]
@@ -9,9 +14,13 @@ pub(crate) struct Progress {
     name_width: usize,
 }
 
-/// The bar of one case.
+/// The bar of one case, and the way to stop it; the bar goes away with it.
 #[derive(Debug)]
-pub(crate) struct CaseProgress(ProgressBar);
+pub(crate) struct CaseProgress<'a> {
+    bar: ProgressBar,
+    in_motion: Cell<bool>,
+    interrupt: &'a Interrupt,
+}
 
 impl Progress {
     /// No bars when `quiet`, or when nobody looks at a terminal.
@@ -29,47 +38,51 @@ impl Progress {
     }
 
     /// Adds the bar of a case that begins.
-    pub(crate) fn begin(&self, case: &str) -> CaseProgress {
+    pub(crate) fn begin<'a>(&self, case: &str, interrupt: &'a Interrupt) -> CaseProgress<'a> {
         let bar = self.bars.add(ProgressBar::new(1000));
         bar.set_style(style("{prefix} {spinner} {msg}"));
         bar.set_prefix(format!("{case:<width$}", width = self.name_width));
         bar.set_message("statics");
-        CaseProgress(bar)
+        CaseProgress {
+            bar,
+            in_motion: Cell::new(false),
+            interrupt,
+        }
     }
 }
 
-impl CaseProgress {
-    /// Shows the state of the static solution.
-    pub(crate) fn statics(&self, iteration: usize, residual_n: f64) {
-        self.0.set_message(format!(
+impl Watch for CaseProgress<'_> {
+    fn statics(&self, iteration: usize, residual_n: f64) {
+        self.bar.set_message(format!(
             "statics: iteration {iteration}, residual {residual_n:.3e} N"
         ));
-        self.0.tick();
+        self.bar.tick();
     }
 
-    /// Turns to the motion, which ends at `duration_s`.
-    pub(crate) fn begin_motion(&self) {
-        self.0
-            .set_style(style("{prefix} [{bar:40}] {msg} {eta} left"));
-        self.0.set_message("");
-        self.0.reset_eta();
-    }
-
-    /// Shows how far the motion is.
-    pub(crate) fn motion(&self, time_s: f64, duration_s: f64) {
+    fn motion(&self, time_s: f64, duration_s: f64) {
+        if !self.in_motion.replace(true) {
+            self.bar
+                .set_style(style("{prefix} [{bar:40}] {msg} {eta} left"));
+            self.bar.reset_eta();
+        }
         let fraction = if duration_s > 0.0 {
             (time_s / duration_s).clamp(0.0, 1.0)
         } else {
             1.0
         };
-        self.0.set_position((1000.0 * fraction) as u64);
-        self.0
+        self.bar.set_position((1000.0 * fraction) as u64);
+        self.bar
             .set_message(format!("{time_s:.1} of {duration_s:.0} s"));
     }
 
-    /// Takes the bar away.
-    pub(crate) fn end(&self) {
-        self.0.finish_and_clear();
+    fn stop(&self) -> bool {
+        self.interrupt.requested()
+    }
+}
+
+impl Drop for CaseProgress<'_> {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
     }
 }
 
@@ -87,11 +100,12 @@ mod tests {
     #[test]
     fn a_hidden_bar_goes_through_its_life() {
         let progress = Progress::new(true, [1].into_iter());
-        let bar = progress.begin("a");
+        let interrupt = Interrupt::default();
+        let bar = progress.begin("a", &interrupt);
         bar.statics(3, 1.0);
-        bar.begin_motion();
         bar.motion(1.0, 0.0);
-        bar.end();
+        assert!(!bar.stop());
+        drop(bar);
         assert!(ProgressStyle::with_template("{prefix} [{bar:40}] {msg} {eta} left").is_ok());
         assert!(ProgressStyle::with_template("{prefix} {spinner} {msg}").is_ok());
     }

@@ -66,8 +66,9 @@ pub enum ChannelTarget {
     EndTension(usize, usize),
     /// Angle at an end of a line between the line and the vertical [deg].
     EndDeclination(usize, usize),
-    /// A line quantity at the node nearest to an arc length: line, quantity, node index.
-    LinePoint(usize, LineQuantity, usize),
+    /// A line quantity at an unstretched distance from end A: line, quantity, distance [m]. Linear
+    /// between the nodes.
+    LinePoint(usize, LineQuantity, f64),
 }
 
 /// A result along a line, given at its nodes: end A, between each two elements, end B

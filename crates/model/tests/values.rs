@@ -278,17 +278,20 @@ references = [
         .iter()
         .map(|c| (c.name.as_str(), c.target))
         .collect();
-    let point = |quantity, node| ChannelTarget::LinePoint(0, quantity, node);
+    let point = |quantity, at| ChannelTarget::LinePoint(0, quantity, at);
     assert_eq!(
         recorded,
         [
-            ("rope.curvature@10m", point(LineQuantity::Curvature, 1)),
+            ("rope.curvature@10m", point(LineQuantity::Curvature, 10.0)),
             (
                 "rope.declination@120m",
-                point(LineQuantity::Declination, 15)
+                point(LineQuantity::Declination, 120.0)
             ),
-            ("rope.curvature@0m", point(LineQuantity::Curvature, 0)),
-            ("rope.bend_moment@54.1m", point(LineQuantity::BendMoment, 5)),
+            ("rope.curvature@0m", point(LineQuantity::Curvature, 0.0)),
+            (
+                "rope.bend_moment@54.1m",
+                point(LineQuantity::BendMoment, 54.1)
+            ),
         ]
     );
     let [declination, curvature, force] = case.references.as_slice() else {

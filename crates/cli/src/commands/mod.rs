@@ -19,6 +19,7 @@ use catenix_results::Status;
 
 use crate::args::{ModelArgs, WorkArgs};
 use crate::failure::{Exit, Failure};
+use crate::interrupt::Interrupt;
 use crate::print;
 use crate::progress::{CaseProgress, Progress};
 
@@ -55,7 +56,8 @@ fn chosen_cases<'a>(study: &'a Study, args: &ModelArgs) -> Result<Vec<&'a LoadCa
 fn for_each_case<T: Send>(
     cases: &[&LoadCase],
     args: &WorkArgs,
-    work: impl Fn(&LoadCase, &CaseProgress) -> T + Sync,
+    interrupt: &Interrupt,
+    work: impl Fn(&LoadCase, &CaseProgress<'_>) -> T + Sync,
 ) -> Vec<T> {
     let available = || std::thread::available_parallelism().map_or(1, usize::from);
     let threads = args
@@ -70,7 +72,8 @@ fn for_each_case<T: Send>(
     let take_cases = || {
         let mut done = Vec::new();
         while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-            done.push((case.name.as_str(), work(case, &progress.begin(&case.name))));
+            let result = work(case, &progress.begin(&case.name, interrupt));
+            done.push((case.name.as_str(), result));
         }
         done
     };

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use catenix_results::figure::study_chart;
 use catenix_results::{Provenance, ResultStore, StoreError, StoredStudy, Summary};
+use catenix_study::compute_case;
 use serde::Serialize;
 
 use super::statics::study_summary;
 use super::{chosen_cases, exit_of, for_each_case, read};
 use crate::args::{ModelArgs, RunArgs};
-use crate::compute::compute_case;
 use crate::failure::{Document, Exit, Failure};
 use crate::interrupt::Interrupt;
 use crate::{print, tables};
@@ -38,8 +38,8 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, Failure> {
         .unwrap_or_else(|| default_directory(&args.model.file));
     let store = ResultStore::create(&directory, &study, &cases, &provenance)?;
     let interrupt = Interrupt::listen()?;
-    let results = for_each_case(&cases, &args.work, |case, progress| {
-        compute_case(case, store.record_case(case), progress, &interrupt)
+    let results = for_each_case(&cases, &args.work, &interrupt, |case, progress| {
+        compute_case(case, store.record_case(case), progress)
     });
     let results = results
         .into_iter()

@@ -1,10 +1,10 @@
 //! `catenix statics`: the static equilibrium of each load case.
 
 use catenix_results::{CaseSummary, Provenance, Status, Summary};
+use catenix_study::compute_statics;
 
 use super::{chosen_cases, exit_of, for_each_case, read};
 use crate::args::StaticsArgs;
-use crate::compute::compute_statics;
 use crate::failure::{Document, Exit, Failure};
 use crate::interrupt::Interrupt;
 use crate::{print, tables};
@@ -14,8 +14,8 @@ pub(crate) fn statics(args: &StaticsArgs) -> Result<Exit, Failure> {
     let provenance = super::run::provenance(&args.model)?;
     let cases = chosen_cases(&study, &args.model)?;
     let interrupt = Interrupt::listen()?;
-    let results = for_each_case(&cases, &args.work, |case, progress| {
-        compute_statics(case, progress, &interrupt)
+    let results = for_each_case(&cases, &args.work, &interrupt, |case, progress| {
+        compute_statics(case, progress)
     });
     let named = cases.iter().map(|case| case.name.clone()).zip(results);
     let summary = study_summary(&study.title, &study.note, &provenance, named);

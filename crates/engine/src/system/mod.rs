@@ -354,9 +354,7 @@ impl System {
             ChannelTarget::EndTension(k, end) | ChannelTarget::EndDeclination(k, end) => {
                 k < lines && end < 2
             }
-            ChannelTarget::LinePoint(k, _, node) => {
-                k < lines && node < self.lines[k].arc_length.len()
-            }
+            ChannelTarget::LinePoint(k, ..) => k < lines,
         }
     }
 }

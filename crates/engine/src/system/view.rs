@@ -86,8 +86,8 @@ impl StepView<'_> {
                 let node = self.node(line, self.end_node(line, end));
                 angle_between(&node.axis, &-Vector3::z())
             }
-            ChannelTarget::LinePoint(line, quantity, node) => {
-                self.quantities(line, node)[quantity.index()]
+            ChannelTarget::LinePoint(line, quantity, arc_length) => {
+                self.line_point(line, quantity, arc_length)
             }
         }
     }
@@ -118,6 +118,23 @@ impl StepView<'_> {
             (f64::INFINITY, f64::NEG_INFINITY),
             |(low, high), tension| (low.min(tension), high.max(tension)),
         )
+    }
+
+    /// A quantity between the nodes of a line.
+    fn line_point(&self, line: usize, quantity: LineQuantity, arc_length: f64) -> f64 {
+        let nodes = &self.solver.system.lines[line].arc_length;
+        let after = nodes.partition_point(|&node| node < arc_length);
+        let after = after.clamp(1, nodes.len() - 1);
+        let share = (arc_length - nodes[after - 1]) / (nodes[after] - nodes[after - 1]);
+        // At a node the neighbour stays out, which may have no value.
+        match share {
+            _ if share < 1e-9 => self.quantities(line, after - 1)[quantity.index()],
+            _ if share > 1.0 - 1e-9 => self.quantities(line, after)[quantity.index()],
+            _ => {
+                let [a, b] = [after - 1, after].map(|k| self.quantities(line, k)[quantity.index()]);
+                a + (b - a) * share
+            }
+        }
     }
 
     fn body_position(&self, body: usize) -> Vector3 {

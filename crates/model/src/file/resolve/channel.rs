@@ -152,22 +152,9 @@ fn line_point(
         log.error(Code::Channel, &text.span, message, help);
         return None;
     }
-    let lengths = line
-        .sections
-        .iter()
-        .flat_map(|section| &section.element_lengths);
-    let nodes = std::iter::once(0.0).chain(lengths.scan(0.0, |sum, length| {
-        *sum += length;
-        Some(*sum)
-    }));
-    let distance = |node: &(usize, f64)| (node.1 - arc_length).abs();
-    let nearest = nodes
-        .enumerate()
-        .min_by(|a, b| distance(a).total_cmp(&distance(b)))?
-        .0;
     Some(Channel {
         name: format!("{name}.{quantity}@{arc_length}m"),
         unit: found.unit(),
-        target: ChannelTarget::LinePoint(index, found, nearest),
+        target: ChannelTarget::LinePoint(index, found, arc_length),
     })
 }

@@ -14,10 +14,9 @@ use catenix_results::{
 };
 use cpu_time::ThreadTime;
 
-use crate::interrupt::Interrupt;
-use crate::progress::CaseProgress;
+use crate::watch::Watch;
 
-/// Elapsed time between two updates of a progress bar.
+/// Elapsed time between two looks of the watch.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
 /// What ends a case early.
@@ -51,15 +50,13 @@ struct Account {
 ///
 /// A solver that gives up makes a failed case, which is a result too; an error is a store that
 /// cannot be written.
-pub(crate) fn compute_case(
+pub fn compute_case(
     case: &LoadCase,
     mut recorder: CaseRecorder,
-    progress: &CaseProgress,
-    interrupt: &Interrupt,
+    watch: &dyn Watch,
 ) -> Result<CaseSummary, StoreError> {
     let mut account = Account::begin();
-    let end = run_case(case, &mut recorder, progress, interrupt, &mut account);
-    progress.end();
+    let end = run_case(case, &mut recorder, watch, &mut account);
     let (status, error) = match end {
         Ok(()) => (Status::Complete, None),
         Err(Stop::Halt(Halt::Interrupted)) => (Status::Interrupted, None),
@@ -70,18 +67,13 @@ pub(crate) fn compute_case(
 }
 
 /// Finds the static equilibrium of a case.
-pub(crate) fn compute_statics(
-    case: &LoadCase,
-    progress: &CaseProgress,
-    interrupt: &Interrupt,
-) -> CaseSummary {
+pub fn compute_statics(case: &LoadCase, watch: &dyn Watch) -> CaseSummary {
     let mut account = Account::begin();
     let system = assemble(case);
     let solution = match &system {
-        Ok(system) => settle(system, progress, interrupt, &mut account),
+        Ok(system) => settle(system, watch, &mut account),
         Err(error) => Err(Halt::Failed(error.clone())),
     };
-    progress.end();
     let (status, error) = match &solution {
         Ok(_) => (Status::Complete, None),
         Err(Halt::Interrupted) => (Status::Interrupted, None),
@@ -99,19 +91,18 @@ pub(crate) fn compute_statics(
 fn run_case(
     case: &LoadCase,
     recorder: &mut CaseRecorder,
-    progress: &CaseProgress,
-    interrupt: &Interrupt,
+    watch: &dyn Watch,
     account: &mut Account,
 ) -> Result<(), Stop> {
     let system = assemble(case).map_err(Halt::Failed)?;
-    let start = settle(&system, progress, interrupt, account)?;
+    let start = settle(&system, watch, account)?;
     recorder
         .record_static(case, &EngineSample(&start.view()))
         .map_err(Stop::Store)?;
     let Some(dynamics) = &case.model.dynamics else {
         return Ok(());
     };
-    progress.begin_motion();
+    watch.motion(0.0, dynamics.duration);
     let mut last_shown = Instant::now();
     let mut store_error = None;
     let result = simulate(&system, &start, &mut |view| {
@@ -120,10 +111,10 @@ fn run_case(
             return ControlFlow::Break(());
         }
         if last_shown.elapsed() >= PROGRESS_INTERVAL {
-            progress.motion(view.time(), dynamics.duration);
+            watch.motion(view.time(), dynamics.duration);
             last_shown = Instant::now();
         }
-        flow(interrupt.requested())
+        flow(watch.stop())
     });
     if let Some(error) = store_error {
         return Err(Stop::Store(error));
@@ -150,20 +141,19 @@ fn assemble(case: &LoadCase) -> Result<System, CaseError> {
 
 fn settle<'a>(
     system: &'a System,
-    progress: &CaseProgress,
-    interrupt: &Interrupt,
+    watch: &dyn Watch,
     account: &mut Account,
 ) -> Result<StaticSolution<'a>, Halt> {
-    if interrupt.requested() {
+    if watch.stop() {
         return Err(Halt::Interrupted);
     }
     let mut last_shown = Instant::now();
     let solution = solve_statics(system, &mut |state| {
         if last_shown.elapsed() >= PROGRESS_INTERVAL {
-            progress.statics(state.iteration, state.residual_n);
+            watch.statics(state.iteration, state.residual_n);
             last_shown = Instant::now();
         }
-        flow(interrupt.requested())
+        flow(watch.stop())
     })
     .map_err(statics_halt)?;
     account.statics = Some(StaticsFacts {
@@ -199,7 +189,7 @@ impl Account {
 }
 
 /// The engine's view of a step, as results see it.
-pub(crate) struct EngineSample<'a, 'b>(pub(crate) &'a StepView<'b>);
+struct EngineSample<'a, 'b>(&'a StepView<'b>);
 
 impl Sample for EngineSample<'_, '_> {
     fn time(&self) -> f64 {

@@ -1,0 +1,11 @@
+//! Computes studies: load cases with everything recorded, and how good the numbers are.
+//!
+//! The engine integrates one system; the results crate stores what it is given. This crate brings
+//! the two together, for every adapter alike: [`compute_case`] and [`compute_statics`] run one load
+//! case.
+
+mod case;
+mod watch;
+
+pub use case::{compute_case, compute_statics};
+pub use watch::Watch;
