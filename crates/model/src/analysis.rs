@@ -18,14 +18,39 @@ pub struct DynamicsSettings {
     pub duration: f64,
     /// Step size.
     pub step: StepControl,
-    /// Spectral radius at infinite frequency of generalised-alpha, 0 to 1 [-].
-    pub spectral_radius: f64,
+    /// Method of integration.
+    pub integrator: IntegratorSettings,
     /// Largest residual force at any element, as a fraction of the system's reference force [-].
     pub tolerance: f64,
     /// Most Newton iterations per step before the step is cut.
     pub max_iterations: usize,
     /// Length of the window at the end over which means and extremes are reported [s].
     pub statistics_window: f64,
+}
+
+/// Method of integration in time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum IntegratorSettings {
+    /// Generalised-alpha, of second order.
+    GeneralisedAlpha {
+        /// Spectral radius at infinite frequency, 0 to 1 [-].
+        spectral_radius: f64,
+    },
+    /// Backward differentiation (Gear's method).
+    Bdf {
+        /// Highest order, 1 to 5.
+        max_order: usize,
+    },
+}
+
+impl IntegratorSettings {
+    /// The word in the model file.
+    pub fn word(&self) -> &'static str {
+        match self {
+            IntegratorSettings::GeneralisedAlpha { .. } => "generalised-alpha",
+            IntegratorSettings::Bdf { .. } => "bdf",
+        }
+    }
 }
 
 /// Choice of the time step.

@@ -13,7 +13,7 @@ mod line;
 mod motion;
 mod output;
 
-pub use analysis::{DynamicsSettings, StaticsSettings, StepControl};
+pub use analysis::{DynamicsSettings, IntegratorSettings, StaticsSettings, StepControl};
 pub use body::{Body, Vessel};
 pub use environment::{Current, CurrentPoint, Environment, Seabed};
 pub use line::{

@@ -324,6 +324,26 @@ fn each_kind_of_bad_input() {
             "duration = \"10 s\"\nspectral_radius = 1.2",
         ),
         (
+            "unknown integrator",
+            "duration = \"10 s\"",
+            "duration = \"10 s\"\nintegrator = \"gear\"",
+        ),
+        (
+            "spectral radius of bdf",
+            "duration = \"10 s\"",
+            "duration = \"10 s\"\nintegrator = \"bdf\"\nspectral_radius = 0.8",
+        ),
+        (
+            "order of generalised-alpha",
+            "duration = \"10 s\"",
+            "duration = \"10 s\"\nmax_order = 2",
+        ),
+        (
+            "order too high",
+            "duration = \"10 s\"",
+            "duration = \"10 s\"\nintegrator = \"bdf\"\nmax_order = 6",
+        ),
+        (
             "unknown channel object",
             "\"upper.end_a.effective_tension\"",
             "\"uper.end_a.effective_tension\"",

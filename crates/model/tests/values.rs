@@ -5,8 +5,8 @@ use std::path::Path;
 use approx::assert_relative_eq;
 use catenix_model::file::parse_study;
 use catenix_model::{
-    ChannelTarget, EndConnection, Joint, LineEnd, LineQuantity, Model, Motion, Statistic,
-    StepControl, Study, SupportRef,
+    ChannelTarget, EndConnection, IntegratorSettings, Joint, LineEnd, LineQuantity, Model, Motion,
+    Statistic, StepControl, Study, SupportRef,
 };
 
 const BASE: &str = r#"
@@ -91,7 +91,13 @@ fn defaults_are_the_documented_ones() {
             max: 0.5
         }
     );
-    assert_eq!((dynamics.spectral_radius, dynamics.tolerance), (0.8, 1e-6));
+    assert_eq!(
+        dynamics.integrator,
+        IntegratorSettings::GeneralisedAlpha {
+            spectral_radius: 0.8
+        }
+    );
+    assert_eq!(dynamics.tolerance, 1e-6);
     assert_eq!(dynamics.max_iterations, 12);
     assert_eq!(dynamics.statistics_window, 20.0);
     assert_eq!(

@@ -23,12 +23,6 @@ impl MotionState {
             acceleration: zeros,
         }
     }
-
-    pub(crate) fn copy_from(&mut self, other: &MotionState) {
-        self.configuration.copy_from(&other.configuration);
-        self.velocity.clone_from(&other.velocity);
-        self.acceleration.clone_from(&other.acceleration);
-    }
 }
 
 /// How velocity and acceleration follow an increment of the configuration.
@@ -83,4 +77,7 @@ pub trait ImplicitSystem {
 
     /// The largest residual.
     fn residual_size(&self, residual: &[Vector6]) -> ResidualSize;
+
+    /// How far an increment moves any point, at most [m]: the size of an error of the configuration.
+    fn increment_size(&self, increment: &[Vector6]) -> f64;
 }

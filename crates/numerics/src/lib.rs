@@ -5,22 +5,29 @@
 //! slices of [`Vector6`], translation first, all components in the global axes. Rotations are
 //! updated by left multiplication: an increment `theta` turns `R` into `exp(theta) R`.
 
+mod bdf;
 mod block;
 mod chains;
+mod differences;
 mod frames;
 mod generalised_alpha;
 mod implicit;
+mod integrator;
 mod junctions;
+mod newton;
 pub mod so3;
 pub mod spline;
+#[cfg(test)]
+mod test_systems;
 
+pub use bdf::Bdf;
 pub use block::{Block6, BlockLu, SingularBlock};
 pub use chains::{BlockMatrix, Chain, FactorError, Factorisation, Topology};
 pub use frames::Configuration;
-pub use generalised_alpha::{
-    AlphaParameters, GeneralisedAlpha, NewtonFailure, NewtonSettings, StepOutcome,
-};
+pub use generalised_alpha::{AlphaParameters, GeneralisedAlpha};
 pub use implicit::{ImplicitSystem, MotionState, ResidualSize, TangentWeights};
+pub use integrator::{Integrator, StepOutcome, StepSettings};
+pub use newton::{NewtonFailure, NewtonSettings};
 
 /// Three components, global axes unless said otherwise.
 pub type Vector3 = nalgebra::Vector3<f64>;

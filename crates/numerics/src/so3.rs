@@ -106,6 +106,33 @@ pub fn left_jacobian_inverse(phi: &Vector3) -> Matrix3 {
     Matrix3::identity() - h * 0.5 + h * h * b
 }
 
+/// Derivative by `phi` of `left_jacobian(phi) * u`, with `u` held.
+///
+/// Source: docs/theory/rotations.md, eq. (9).
+pub fn left_jacobian_derivative(phi: &Vector3, u: &Vector3) -> Matrix3 {
+    let s = phi.norm_squared();
+    // The coefficients of the left Jacobian and their derivatives by s.
+    let (a, b, a_s, b_s) = if s < SMALL_ANGLE_SQUARED {
+        (
+            0.5 - s / 24.0 * (1.0 - s / 30.0 * (1.0 - s / 56.0)),
+            1.0 / 6.0 - s / 120.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0)),
+            -1.0 / 24.0 + s / 360.0 * (1.0 - s * (3.0 / 112.0)),
+            -1.0 / 120.0 + s / 2520.0 * (1.0 - s / 48.0),
+        )
+    } else {
+        let angle = s.sqrt();
+        let a = (1.0 - angle.cos()) / s;
+        let b = (angle - angle.sin()) / (s * angle);
+        let a_s = (0.5 * angle.sin() / angle - a) / s;
+        (a, b, a_s, 0.5 * (a - 3.0 * b) / s)
+    };
+    let along = phi.dot(u);
+    let turned = phi.cross(u) * a_s + (phi * along - u * s) * b_s;
+    hat(u) * -a
+        + (Matrix3::identity() * along + phi * u.transpose() - u * phi.transpose() * 2.0) * b
+        + turned * phi.transpose() * 2.0
+}
+
 /// Pulls a matrix that drifted off SO(3) by round-off back on (one Newton step).
 ///
 /// Source: docs/theory/rotations.md, eq. (7).
@@ -192,6 +219,19 @@ mod tests {
                 Matrix3::identity(),
                 epsilon = 1e-12
             );
+        }
+
+        #[test]
+        fn left_jacobian_derivative_matches_finite_differences(
+            phi in vector(1.7), u in vector(3.0), d in vector(1.0), small in 0.0..1.0f64,
+        ) {
+            // Half of the angles are in the range of the series.
+            let phi = if small < 0.5 { phi * 0.01 } else { phi };
+            let step = 1e-5;
+            let numeric = (left_jacobian(&(phi + d * step)) - left_jacobian(&(phi - d * step)))
+                * u / (2.0 * step);
+            // Central differences: 1e-16 / 1e-5 of rounding, 1e-10 of truncation.
+            assert_relative_eq!(left_jacobian_derivative(&phi, &u) * d, numeric, epsilon = 1e-8);
         }
 
         #[test]

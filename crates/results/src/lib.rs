@@ -28,7 +28,7 @@ mod zarr;
 
 pub use error::StoreError;
 pub use layout::{STORE_FORMAT, STORE_NAME};
-pub use outcome::{CaseOutcome, DynamicsFacts, StaticsFacts};
+pub use outcome::{CaseOutcome, DynamicsFacts, StaticsFacts, mean_order};
 pub use overview::{BodyOverview, CurrentOverview, LineOverview, ModelOverview, VesselOverview};
 pub use recorder::CaseRecorder;
 pub use sample::Sample;

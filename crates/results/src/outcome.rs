@@ -41,6 +41,8 @@ pub struct DynamicsFacts {
     pub steps: usize,
     /// Steps that were tried and discarded.
     pub rejected_steps: usize,
+    /// Accepted steps of each order of the integrator, from 1 to 5.
+    pub steps_of_order: [usize; 5],
     /// Newton iterations.
     pub iterations: usize,
     /// Factorisations of the Newton matrix.
@@ -82,6 +84,7 @@ impl CaseOutcome {
             summary.simulated_s = finite(dynamics.end_time_s);
             summary.steps = Some(dynamics.steps);
             summary.rejected_steps = Some(dynamics.rejected_steps);
+            summary.steps_of_order = Some(dynamics.steps_of_order);
             summary.iterations = Some(dynamics.iterations);
             summary.factorisations = Some(dynamics.factorisations);
             summary.residual_n = finite(dynamics.residual_n);
@@ -112,12 +115,24 @@ impl CaseOutcome {
             insert("solver_iterations", dynamics.iterations as f64);
             insert("solver_factorisations", dynamics.factorisations as f64);
             insert("solver_residual_n", dynamics.residual_n);
+            insert("solver_mean_order", mean_order(&dynamics.steps_of_order));
             for (name, value) in &dynamics.energy {
                 insert(&format!("energy_{name}"), *value);
             }
             insert("energy_imbalance", dynamics.energy_imbalance);
         }
     }
+}
+
+/// Mean order of the integrator over all steps; NaN without steps.
+pub fn mean_order(steps_of_order: &[usize; 5]) -> f64 {
+    let steps: usize = steps_of_order.iter().sum();
+    let total: usize = steps_of_order
+        .iter()
+        .zip(1..)
+        .map(|(count, order)| count * order)
+        .sum();
+    total as f64 / steps as f64
 }
 
 fn finite(value: f64) -> Option<f64> {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use catenix_model::{Figure, LoadCase, StepControl, Study};
+use catenix_model::{Figure, IntegratorSettings, LoadCase, StepControl, Study};
 use serde::{Deserialize, Serialize};
 
 use crate::layout::{self, STORE_FORMAT, STORE_NAME};
@@ -205,7 +205,14 @@ fn case_attributes(case: &LoadCase) -> Attributes {
     if let Some(dynamics) = &model.dynamics {
         insert("duration_s", dynamics.duration);
         insert("statistics_window_s", dynamics.statistics_window);
-        insert("spectral_radius", dynamics.spectral_radius);
+        match dynamics.integrator {
+            IntegratorSettings::GeneralisedAlpha { spectral_radius } => {
+                insert("spectral_radius", spectral_radius);
+            }
+            IntegratorSettings::Bdf { max_order } => {
+                insert("max_order", max_order as f64);
+            }
+        }
         insert("dynamics_tolerance", dynamics.tolerance);
         insert("dynamics_max_iterations", dynamics.max_iterations as f64);
         match dynamics.step {
@@ -218,6 +225,7 @@ fn case_attributes(case: &LoadCase) -> Attributes {
                 insert("step_max_s", max);
             }
         }
+        attributes.insert("integrator".into(), dynamics.integrator.word().into());
     }
     attributes
 }

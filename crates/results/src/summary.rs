@@ -155,6 +155,9 @@ pub struct CaseSummary {
     pub steps: Option<usize>,
     /// Time steps that were tried and discarded.
     pub rejected_steps: Option<usize>,
+    /// Accepted steps of each order of the integrator, from 1 to 5.
+    #[serde(default)]
+    pub steps_of_order: Option<[usize; 5]>,
     /// Newton iterations over all time steps.
     pub iterations: Option<usize>,
     /// Factorisations of the Newton matrix over all time steps.
@@ -277,6 +280,7 @@ impl CaseSummary {
             static_residual_n: None,
             steps: None,
             rejected_steps: None,
+            steps_of_order: None,
             iterations: None,
             factorisations: None,
             residual_n: None,

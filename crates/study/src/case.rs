@@ -267,6 +267,7 @@ fn dynamics_facts(report: &DynamicsReport) -> DynamicsFacts {
         end_time_s: report.end_time_s,
         steps: statistics.steps,
         rejected_steps: statistics.rejected_steps,
+        steps_of_order: statistics.steps_of_order,
         iterations: statistics.iterations,
         factorisations: statistics.factorisations,
         residual_n: statistics.largest_residual_n,

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use catenix_results::mean_order;
 use catenix_results::{
     BodySummary, CaseSummary, EndSummary, Extent, LineSummary, Located, Status, Summary,
 };
@@ -115,6 +116,9 @@ fn results(cases: &[(&String, &CaseSummary)]) -> String {
     rows.add("  simulated time", "s", |case| fixed(case.simulated_s, 1));
     rows.add("  steps", "", |case| count(case.steps));
     rows.add("  rejected steps", "", |case| count(case.rejected_steps));
+    rows.add("  mean order", "", |case| {
+        fixed(case.steps_of_order.as_ref().map(mean_order), 2)
+    });
     rows.add("  iterations", "", |case| count(case.iterations));
     rows.add("  largest residual", "N", |case| maybe(case.residual_n));
     rows.add("  energy imbalance", "%", |case| {

@@ -4,21 +4,19 @@
 
 use std::ops::ControlFlow;
 
-use catenix_model::{DynamicsSettings, StepControl};
+use catenix_model::{DynamicsSettings, IntegratorSettings, StepControl};
 use catenix_numerics::{
-    AlphaParameters, GeneralisedAlpha, ImplicitSystem, MotionState, NewtonFailure, NewtonSettings,
-    TangentWeights, Vector6,
+    AlphaParameters, Bdf, GeneralisedAlpha, ImplicitSystem, Integrator, MotionState, NewtonFailure,
+    NewtonSettings, StepOutcome, StepSettings, TangentWeights, Vector6,
 };
 use thiserror::Error;
 
 use super::energy::{EnergyAccount, EnergyLedger};
 use super::statics::StaticSolution;
-use crate::system::{FrameOwner, StepView, System, SystemSolver};
+use crate::system::{FrameOwner, LoadEvent, StepView, System, SystemSolver};
 
 /// Smallest step after failed Newton iterations, over the step that was asked for.
 const SMALLEST_CUT: f64 = 1e-4;
-/// Share of the allowed error that the next step aims at.
-const SAFETY: f64 = 0.85;
 /// Weight of the mass that drowns stiffness and damping when accelerations are found [1/s2].
 const MASS_ONLY: f64 = 1e20;
 
@@ -29,6 +27,8 @@ pub struct SolverStatistics {
     pub steps: usize,
     /// Steps repeated with a smaller size.
     pub rejected_steps: usize,
+    /// Accepted steps of each order of the integrator, from 1 to 5.
+    pub steps_of_order: [usize; 5],
     /// Newton iterations, rejected steps included.
     pub iterations: usize,
     /// Factorisations of the iteration matrix.
@@ -110,15 +110,28 @@ pub fn simulate(
         .ok_or(DynamicsError::NoDynamics)?;
     let mut solver = SystemSolver::moving(system);
     let mut state = MotionState::at_rest(start.configuration().clone());
-    find_accelerations(&mut solver, &mut state);
-    let parameters = AlphaParameters::with_spectral_radius(settings.spectral_radius);
-    let integrator = GeneralisedAlpha::new(parameters, state);
+    find_accelerations(&mut solver, 0.0, &mut state);
+    let integrator: Box<dyn Integrator> = match settings.integrator {
+        IntegratorSettings::GeneralisedAlpha { spectral_radius } => {
+            let parameters = AlphaParameters::with_spectral_radius(spectral_radius);
+            Box::new(GeneralisedAlpha::new(parameters, state))
+        }
+        IntegratorSettings::Bdf { max_order } => Box::new(Bdf::new(max_order, state)),
+    };
     let ledger = EnergyLedger::new(solver.energy_terms(0.0, integrator.state()));
     Simulation {
         settings,
-        newton: NewtonSettings {
-            tolerance_newtons: system.allowed_residual(settings.tolerance),
-            max_iterations: settings.max_iterations,
+        goals: StepSettings {
+            newton: NewtonSettings {
+                tolerance_newtons: system.allowed_residual(settings.tolerance),
+                max_iterations: settings.max_iterations,
+            },
+            allowed_error: match settings.step {
+                StepControl::Fixed(_) => None,
+                StepControl::Adaptive { accuracy, .. } => {
+                    Some(accuracy * system.reference_length())
+                }
+            },
         },
         solver,
         integrator,
@@ -129,8 +142,10 @@ pub fn simulate(
     .run(observer)
 }
 
-/// Accelerations that satisfy the equations of motion at t = 0.
-fn find_accelerations(solver: &mut SystemSolver<'_>, state: &mut MotionState) {
+/// Accelerations that satisfy the equations of motion at `time`.
+///
+/// Source: docs/theory/integration.md, eq. (10).
+fn find_accelerations(solver: &mut SystemSolver<'_>, time: f64, state: &mut MotionState) {
     let n = state.configuration.len();
     let mut residual = vec![Vector6::zeros(); n];
     let mut increment = vec![Vector6::zeros(); n];
@@ -140,21 +155,21 @@ fn find_accelerations(solver: &mut SystemSolver<'_>, state: &mut MotionState) {
         rotation: None,
     };
     solver.begin();
-    solver.assemble(0.0, state, Some(&weights), &mut residual);
-    // A massless frame has no acceleration of its own; it starts from zero.
+    solver.assemble(time, state, Some(&weights), &mut residual);
+    // A massless frame has no acceleration of its own; it keeps what it has.
     if solver.solve(&residual, &mut increment).is_ok() {
         for (acceleration, d) in state.acceleration.iter_mut().zip(&increment) {
-            *acceleration = d * MASS_ONLY;
+            *acceleration += d * MASS_ONLY;
         }
     }
-    solver.assemble(0.0, state, None, &mut residual);
+    solver.assemble(time, state, None, &mut residual);
 }
 
 struct Simulation<'s> {
     settings: &'s DynamicsSettings,
-    newton: NewtonSettings,
+    goals: StepSettings,
     solver: SystemSolver<'s>,
-    integrator: GeneralisedAlpha,
+    integrator: Box<dyn Integrator>,
     ledger: EnergyLedger,
     statistics: SolverStatistics,
     time: f64,
@@ -180,14 +195,14 @@ impl Simulation<'_> {
             let span = event.time - self.time;
             let pieces = (span / size - 1e-6).ceil().max(1.0);
             let step = span / pieces;
-            let end = if pieces == 1.0 {
-                event.time
-            } else {
-                self.time + step
-            };
+            let due = pieces == 1.0;
+            let end = if due { event.time } else { self.time + step };
+            // A step that ends on a jump of the loads sees those before it.
+            let jump = due && event.jump;
+            let seen = if jump { end.next_down() } else { end };
             let result = self
                 .integrator
-                .advance(&mut self.solver, end, step, &self.newton);
+                .advance(&mut self.solver, seen, step, &self.goals);
             let outcome = match result {
                 Ok(outcome) => outcome,
                 Err(failure) => {
@@ -201,7 +216,7 @@ impl Simulation<'_> {
                 }
             };
             self.statistics.iterations += outcome.iterations;
-            match self.next_size(step, size, outcome.local_error, outcome.iterations) {
+            match self.next_size(step, size, &outcome) {
                 Ok(next) => size = next,
                 Err(smaller) => {
                     self.statistics.rejected_steps += 1;
@@ -212,40 +227,47 @@ impl Simulation<'_> {
             self.integrator.accept();
             self.time = end;
             self.statistics.steps += 1;
+            if let Some(count) = self.statistics.steps_of_order.get_mut(outcome.order - 1) {
+                *count += 1;
+            }
             self.statistics.largest_residual_n = self
                 .statistics
                 .largest_residual_n
                 .max(outcome.residual.newtons);
             self.ledger
                 .add(step, self.solver.energy_terms(end, self.integrator.state()));
-            let due = pieces == 1.0;
             interrupted = self
                 .show(observer, step, due && event.output, due && event.field)
                 .is_break();
+            if jump {
+                self.restart();
+            }
         }
         Ok(self.report(interrupted))
     }
 
+    /// Starts anew from the current state, since the loads have jumped.
+    fn restart(&mut self) {
+        let mut state = self.integrator.state().clone();
+        find_accelerations(&mut self.solver, self.time, &mut state);
+        self.integrator.restart(&state.acceleration);
+        let terms = self.solver.energy_terms(self.time, &state);
+        self.ledger.restart(terms);
+    }
+
     /// The size to ask for after a converged step, or a smaller one to repeat it with.
-    fn next_size(
-        &self,
-        step: f64,
-        asked: f64,
-        local_error: f64,
-        iterations: usize,
-    ) -> Result<f64, f64> {
+    fn next_size(&self, step: f64, asked: f64, outcome: &StepOutcome) -> Result<f64, f64> {
         match self.settings.step {
             StepControl::Fixed(fixed) => Ok((2.0 * asked).min(fixed)),
-            StepControl::Adaptive { accuracy, min, max } => {
-                let allowed = accuracy * self.solver.system().reference_length();
-                // The local error of a second-order method grows with the cube of the step.
-                let ratio = (allowed / local_error.max(1e-30)).cbrt();
-                if ratio < 1.0 && step > min * (1.0 + 1e-9) {
-                    return Err((SAFETY * ratio * step).clamp((0.2 * step).max(min), step));
+            StepControl::Adaptive { min, max, .. } => {
+                let wanted = outcome.growth * step;
+                let allowed = self.goals.allowed_error.unwrap_or(f64::INFINITY);
+                if outcome.local_error > allowed && step > min * (1.0 + 1e-9) {
+                    return Err(wanted.clamp((0.2 * step).max(min), step));
                 }
                 // A step cut short by an output time says nothing against the size asked for.
-                let mut proposal = (SAFETY * ratio * step).clamp(0.5 * step, 2.0 * asked);
-                if iterations > self.settings.max_iterations / 2 {
+                let mut proposal = wanted.clamp(0.5 * step, 2.0 * asked);
+                if outcome.iterations > self.settings.max_iterations / 2 {
                     proposal = proposal.min(step);
                 }
                 Ok(proposal.clamp(min, max))
@@ -290,7 +312,7 @@ impl Simulation<'_> {
             step_s,
             iterations: failure.iterations,
             residual_n: failure.residual.newtons,
-            allowed_n: self.newton.tolerance_newtons,
+            allowed_n: self.goals.newton.tolerance_newtons,
             owner: self.solver.system().owner(failure.residual.frame),
             report: Box::new(self.report(false)),
         }
@@ -298,9 +320,9 @@ impl Simulation<'_> {
 
     fn events(&self) -> Events {
         let output = &self.solver.system().model().output;
-        let mut extra: Vec<f64> = self.solver.system().event_times().collect();
-        extra.retain(|time| *time > 0.0 && *time < self.settings.duration);
-        extra.sort_by(f64::total_cmp);
+        let mut extra: Vec<LoadEvent> = self.solver.system().load_events().collect();
+        extra.retain(|event| event.time > 0.0 && event.time < self.settings.duration);
+        extra.sort_by(|a, b| a.time.total_cmp(&b.time));
         Events {
             output: output.interval,
             field: output.field_interval,
@@ -314,7 +336,7 @@ impl Simulation<'_> {
 struct Events {
     output: f64,
     field: f64,
-    extra: Vec<f64>,
+    extra: Vec<LoadEvent>,
     duration: f64,
 }
 
@@ -322,6 +344,8 @@ struct Event {
     time: f64,
     output: bool,
     field: bool,
+    /// Whether the loads jump.
+    jump: bool,
 }
 
 impl Events {
@@ -334,17 +358,14 @@ impl Events {
         let multiple = |interval: f64| ((now + slack) / interval).floor() * interval + interval;
         let next_output = multiple(self.output).min(self.duration);
         let next_field = multiple(self.field).min(self.duration);
-        let next_extra = self
-            .extra
-            .iter()
-            .copied()
-            .find(|&time| time > now + slack)
-            .unwrap_or(f64::INFINITY);
+        let extra = self.extra.iter().find(|event| event.time > now + slack);
+        let next_extra = extra.map_or(f64::INFINITY, |event| event.time);
         let time = next_output.min(next_field).min(next_extra);
         Some(Event {
             time,
             output: next_output <= time + slack,
             field: next_field <= time + slack,
+            jump: extra.is_some_and(|event| event.jump && event.time <= time + slack),
         })
     }
 }

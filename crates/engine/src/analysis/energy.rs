@@ -62,6 +62,11 @@ impl EnergyLedger {
         self.last = terms;
     }
 
+    /// Goes on with other powers, since the loads have jumped.
+    pub(super) fn restart(&mut self, terms: EnergyTerms) {
+        self.last = terms;
+    }
+
     pub(super) fn account(&self) -> EnergyAccount {
         let stored_change = self.last.stored() - self.first.stored();
         let total: f64 = self.works.iter().sum();

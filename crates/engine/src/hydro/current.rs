@@ -28,9 +28,13 @@ impl CurrentField {
         }
     }
 
-    /// Times at which the current jumps or bends: a step should end there.
-    pub fn event_times(&self) -> impl Iterator<Item = f64> + '_ {
-        self.current.factor.iter().map(|&(time, _)| time)
+    /// Times at which the current bends or jumps, and whether it jumps: a step should end there.
+    pub fn events(&self) -> impl Iterator<Item = (f64, bool)> + '_ {
+        let table = &self.current.factor;
+        table.iter().map(|&(time, factor)| {
+            let jumps = |&(other, value): &(f64, f64)| other == time && value != factor;
+            (time, table.iter().any(jumps))
+        })
     }
 
     /// Velocity at height `z` and its derivative by z, both times `factor`, (3) [m/s], [1/s].

@@ -199,6 +199,15 @@ pub(crate) struct LineLayout {
     pub element_types: Vec<usize>,
 }
 
+/// A time at which loads are not smooth.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LoadEvent {
+    /// Time [s].
+    pub time: f64,
+    /// Whether they jump, rather than bend.
+    pub jump: bool,
+}
+
 /// Which line or body a frame belongs to, for messages.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FrameOwner {
@@ -334,9 +343,10 @@ impl System {
         &self.model.line_types[self.lines[line].element_types[element]]
     }
 
-    /// Times at which loads jump: a step should end there.
-    pub(crate) fn event_times(&self) -> impl Iterator<Item = f64> + '_ {
-        self.current.event_times()
+    /// Times at which loads bend or jump: a step should end there.
+    pub(crate) fn load_events(&self) -> impl Iterator<Item = LoadEvent> + '_ {
+        let events = self.current.events();
+        events.map(|(time, jump)| LoadEvent { time, jump })
     }
 
     /// Whether a channel can be read from this system.

@@ -188,4 +188,13 @@ impl ImplicitSystem for SystemSolver<'_> {
         }
         size
     }
+
+    fn increment_size(&self, increment: &[Vector6]) -> f64 {
+        let moves = increment.iter().zip(&self.system.frames).map(|(d, frame)| {
+            let shift = d.fixed_rows::<3>(0).norm();
+            let turn = d.fixed_rows::<3>(3).norm() * 0.5 * frame.residual_length;
+            shift.max(turn)
+        });
+        moves.fold(0.0, f64::max)
+    }
 }

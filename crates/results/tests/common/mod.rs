@@ -8,9 +8,9 @@
 use std::path::Path;
 
 use catenix_model::{
-    Axis, Body, Channel, ChannelTarget, Current, DynamicsSettings, Environment, Figure, Line,
-    LineEnd, LineType, LoadCase, Model, OutputSettings, PipeWall, Reference, Section,
-    StaticsSettings, Statistic, StepControl, Study, Vessel,
+    Axis, Body, Channel, ChannelTarget, Current, DynamicsSettings, Environment, Figure,
+    IntegratorSettings, Line, LineEnd, LineType, LoadCase, Model, OutputSettings, PipeWall,
+    Reference, Section, StaticsSettings, Statistic, StepControl, Study, Vessel,
 };
 use catenix_results::{
     CaseOutcome, DynamicsFacts, Provenance, ResultStore, Sample, StaticsFacts, Status, Summary,
@@ -190,7 +190,9 @@ fn model() -> Model {
         dynamics: Some(DynamicsSettings {
             duration: DURATION_S,
             step: StepControl::Fixed(STEP_S),
-            spectral_radius: 0.8,
+            integrator: IntegratorSettings::GeneralisedAlpha {
+                spectral_radius: 0.8,
+            },
             tolerance: 1e-9,
             max_iterations: 20,
             statistics_window: WINDOW_S,
@@ -217,6 +219,7 @@ pub fn outcome(status: Status, end_time_s: f64) -> CaseOutcome {
             end_time_s,
             steps: (end_time_s / STEP_S) as usize,
             rejected_steps: 1,
+            steps_of_order: [0, (end_time_s / STEP_S) as usize, 0, 0, 0],
             iterations: 160,
             factorisations: 160,
             residual_n: 0.25,

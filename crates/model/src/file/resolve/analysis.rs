@@ -3,9 +3,10 @@
 use crate::file::diagnostic::DiagnosticCode as Code;
 use crate::file::dimension::Dimensionless;
 use crate::file::log::Log;
+use crate::file::node::Span;
 use crate::file::quantity::Quantity;
-use crate::file::tables::{DynamicsTable, StaticsTable};
-use crate::{DynamicsSettings, Motion, StaticsSettings, StepControl, Vessel};
+use crate::file::tables::{DynamicsTable, IntegratorChoice, StaticsTable};
+use crate::{DynamicsSettings, IntegratorSettings, Motion, StaticsSettings, StepControl, Vessel};
 
 use super::Slot;
 
@@ -15,6 +16,11 @@ const DEFAULT_ACCURACY: f64 = 3e-6;
 const DEFAULT_MIN_STEP: f64 = 1e-4;
 /// Largest step where the file does not say [s]; named in the key's description.
 const DEFAULT_MAX_STEP: f64 = 0.5;
+
+/// Spectral radius where the file does not say [-]; named in the key's description.
+const DEFAULT_SPECTRAL_RADIUS: f64 = 0.8;
+/// Highest order of BDF where the file does not say; named in the key's description.
+const DEFAULT_MAX_ORDER: usize = 2;
 
 /// Resolves the settings of statics.
 pub(super) fn statics(table: &StaticsTable, log: &mut Log) -> StaticsSettings {
@@ -33,18 +39,6 @@ pub(super) fn dynamics(
     log: &mut Log,
 ) -> DynamicsSettings {
     check_below_one("tolerance", &table.tolerance, log);
-    if table.spectral_radius.si > 1.0 {
-        let message = format!(
-            "`spectral_radius` lies between 0 and 1, but is {}",
-            table.spectral_radius.si
-        );
-        log.error(
-            Code::Value,
-            &table.spectral_radius.span,
-            message,
-            "0.8 suits most models",
-        );
-    }
     let duration = table.duration.si;
     let statistics_window = match &table.statistics_window {
         Some(window) => {
@@ -69,10 +63,49 @@ pub(super) fn dynamics(
     DynamicsSettings {
         duration,
         step: step_control(table, log),
-        spectral_radius: table.spectral_radius.si,
+        integrator: integrator(table, log),
         tolerance: table.tolerance.si,
         max_iterations: table.max_iterations.value,
         statistics_window,
+    }
+}
+
+fn integrator(table: &DynamicsTable, log: &mut Log) -> IntegratorSettings {
+    let radius = table.spectral_radius.as_ref();
+    let order = table.max_order.as_ref();
+    let mut foreign = |key: &str, span: &Span, own: &str| {
+        let message = format!("`{key}` belongs to the integrator `{own}`, which is not used here");
+        let help = format!("remove it, or write integrator = \"{own}\"");
+        log.error(Code::ConflictingKeys, span, message, help);
+    };
+    match table.integrator {
+        IntegratorChoice::GeneralisedAlpha => {
+            if let Some(order) = order {
+                foreign("max_order", &order.span, "bdf");
+            }
+            if let Some(radius) = radius.filter(|radius| radius.si > 1.0) {
+                let message = format!(
+                    "`spectral_radius` lies between 0 and 1, but is {}",
+                    radius.si
+                );
+                log.error(Code::Value, &radius.span, message, "0.8 suits most models");
+            }
+            IntegratorSettings::GeneralisedAlpha {
+                spectral_radius: radius.map_or(DEFAULT_SPECTRAL_RADIUS, |radius| radius.si),
+            }
+        }
+        IntegratorChoice::Bdf => {
+            if let Some(radius) = radius {
+                foreign("spectral_radius", &radius.span, "generalised-alpha");
+            }
+            if let Some(order) = order.filter(|order| !(1..=5).contains(&order.value)) {
+                let message = format!("`max_order` lies between 1 and 5, but is {}", order.value);
+                log.error(Code::Value, &order.span, message, "2 suits most models");
+            }
+            IntegratorSettings::Bdf {
+                max_order: order.map_or(DEFAULT_MAX_ORDER, |order| order.value),
+            }
+        }
     }
 }
 

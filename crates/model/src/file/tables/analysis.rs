@@ -1,6 +1,6 @@
 //! `[statics]` and `[dynamics]`.
 
-use crate::file::define::table;
+use crate::file::define::{choice, table};
 use crate::file::dimension::{Dimensionless, Time};
 use crate::file::quantity::{NonNegative, Positive};
 use crate::file::read::Count;
@@ -22,6 +22,8 @@ table! {
     pub(super) struct DynamicsTable {
         /// Simulated time.
         duration: Positive<Time>,
+        /// Method of integration. Both are implicit and reach the same answers.
+        integrator: IntegratorChoice = "generalised-alpha",
         /// Constant step; absent: the step is chosen so that its error stays below `accuracy`.
         step: Option<Positive<Time>>,
         /// Error allowed per step, as a fraction of the system's reference length; absent: 3e-6.
@@ -30,9 +32,12 @@ table! {
         min_step: Option<Positive<Time>>,
         /// Largest step; absent: 0.5 s.
         max_step: Option<Positive<Time>>,
-        /// Spectral radius at infinite frequency of generalised-alpha: 1 keeps, 0 removes what is
-        /// too fast for the step.
-        spectral_radius: NonNegative<Dimensionless> = 0.8,
+        /// Of generalised-alpha: spectral radius at infinite frequency; 1 keeps, 0 removes what is
+        /// too fast for the step; absent: 0.8.
+        spectral_radius: Option<NonNegative<Dimensionless>>,
+        /// Of bdf: the highest order, 1 to 5; absent: 2. From 3 on, oscillations that are hardly
+        /// damped may grow.
+        max_order: Option<Count>,
         /// Largest residual force at any element, as a fraction of the system's reference force.
         tolerance: Positive<Dimensionless> = 1e-6,
         /// Most Newton iterations per step before the step is cut.
@@ -40,5 +45,15 @@ table! {
         /// Time at the end over which means and extremes are reported; absent: the longest period
         /// of the harmonic motions that act, or else the last 10 % of the duration.
         statistics_window: Option<Positive<Time>>,
+    }
+}
+
+choice! {
+    /// Methods of integration in time.
+    pub(super) enum IntegratorChoice {
+        /// Second order, with a damping of what is too fast for the step that can be chosen.
+        GeneralisedAlpha = "generalised-alpha",
+        /// Backward differentiation, Gear's method.
+        Bdf = "bdf",
     }
 }

@@ -9,7 +9,7 @@ mod motion;
 mod output;
 mod study;
 
-pub(super) use analysis::{DynamicsTable, StaticsTable};
+pub(super) use analysis::{DynamicsTable, IntegratorChoice, StaticsTable};
 pub(super) use body::{AnchorTable, BodyTable, VesselTable};
 pub(super) use environment::{CurrentPointTable, CurrentTable, EnvironmentTable, SeabedTable};
 pub(super) use line::{

@@ -1,0 +1,155 @@
+//! Newton's method on the residual of one implicit step, common to all integrators.
+//!
+//! Source: docs/theory/integration.md, eq. (6); docs/theory/solver.md, eqs. (5) to (7).
+
+use crate::Vector6;
+use crate::implicit::{ImplicitSystem, MotionState, ResidualSize, TangentWeights};
+
+/// Newton iterations before the line search looks at their residual.
+const UNCHECKED_ITERATIONS: usize = 4;
+/// Most halvings of an increment.
+const MOST_HALVINGS: usize = 3;
+
+/// When Newton's method stops.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NewtonSettings {
+    /// Largest residual accepted [N].
+    pub tolerance_newtons: f64,
+    /// Iterations after which the step is given up.
+    pub max_iterations: usize,
+}
+
+/// A solution of one step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct NewtonOutcome {
+    /// Iterations (matrix solutions).
+    pub iterations: usize,
+    /// Residual at the end.
+    pub residual: ResidualSize,
+}
+
+/// Why a step did not converge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NewtonFailure {
+    /// Newton iterations done.
+    pub iterations: usize,
+    /// Residual when it was given up; not finite when the state was lost.
+    pub residual: ResidualSize,
+    /// Whether the matrix was singular (at `residual.frame`).
+    pub singular: bool,
+}
+
+/// The state at the end of a step, and how an integrator lets Newton's method move it.
+pub(crate) trait Trial {
+    /// The trial state.
+    fn state(&self) -> &MotionState;
+
+    /// Prepares [`Self::weights`] and [`Self::correct`] at the trial state.
+    fn linearise(&mut self);
+
+    /// How velocity and acceleration follow an increment of the configuration.
+    fn weights(&self) -> TangentWeights<'_>;
+
+    /// Moves the configuration by `increment`, (n), with the velocity and acceleration that follow.
+    fn correct(&mut self, increment: &[Vector6]);
+}
+
+/// Room for the iteration.
+#[derive(Debug, Clone)]
+pub(crate) struct Newton {
+    residual: Vec<Vector6>,
+    increment: Vec<Vector6>,
+}
+
+impl Newton {
+    pub(crate) fn new(frame_count: usize) -> Newton {
+        Newton {
+            residual: vec![Vector6::zeros(); frame_count],
+            increment: vec![Vector6::zeros(); frame_count],
+        }
+    }
+
+    /// Moves `trial` until its residual at `time` is small enough.
+    pub(crate) fn solve(
+        &mut self,
+        system: &mut dyn ImplicitSystem,
+        time: f64,
+        trial: &mut dyn Trial,
+        settings: &NewtonSettings,
+    ) -> Result<NewtonOutcome, NewtonFailure> {
+        system.begin();
+        let mut iterations = 0;
+        let mut previous = f64::INFINITY;
+        loop {
+            // After the first iteration the residual alone usually shows convergence; the matrix
+            // is only built when it does not.
+            let mut converged = false;
+            if iterations > 0 {
+                let residual = self.search_line(system, time, trial, iterations, previous);
+                converged = residual <= settings.tolerance_newtons;
+                previous = residual;
+            }
+            if !converged {
+                trial.linearise();
+                let weights = trial.weights();
+                system.assemble(time, trial.state(), Some(&weights), &mut self.residual);
+            }
+            let residual = system.residual_size(&self.residual);
+            let failure = NewtonFailure {
+                iterations,
+                residual,
+                singular: false,
+            };
+            if !residual.newtons.is_finite() {
+                return Err(failure);
+            }
+            if residual.newtons <= settings.tolerance_newtons {
+                return Ok(NewtonOutcome {
+                    iterations,
+                    residual,
+                });
+            }
+            if iterations == settings.max_iterations {
+                return Err(failure);
+            }
+            system
+                .solve(&self.residual, &mut self.increment)
+                .map_err(|frame| NewtonFailure {
+                    residual: ResidualSize { frame, ..residual },
+                    singular: true,
+                    ..failure
+                })?;
+            iterations += 1;
+            system.moving(&self.increment);
+            trial.correct(&self.increment);
+        }
+    }
+
+    /// Evaluates the residual after an increment, and takes half of the increment back as long as
+    /// it made matters worse. The first iterations go unchecked: in the mixed form their residual
+    /// may rise, and the next iteration repairs it.
+    fn search_line(
+        &mut self,
+        system: &mut dyn ImplicitSystem,
+        time: f64,
+        trial: &mut dyn Trial,
+        iterations: usize,
+        previous: f64,
+    ) -> f64 {
+        let mut halvings = 0;
+        loop {
+            system.assemble(time, trial.state(), None, &mut self.residual);
+            let residual = system.residual_size(&self.residual).newtons;
+            // A residual that is not a number is worse than any.
+            let better = residual < previous;
+            if better || iterations < UNCHECKED_ITERATIONS || halvings == MOST_HALVINGS {
+                return residual;
+            }
+            halvings += 1;
+            self.increment.iter_mut().for_each(|d| *d *= -0.5);
+            trial.correct(&self.increment);
+            // What is left of the increment, for the next halving.
+            self.increment.iter_mut().for_each(|d| *d *= -1.0);
+        }
+    }
+}

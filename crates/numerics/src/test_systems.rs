@@ -1,0 +1,236 @@
+//! Systems with known motions, for the tests of the integrators.
+
+use crate::{
+    Configuration, ImplicitSystem, Integrator, Matrix3, MotionState, NewtonSettings, ResidualSize,
+    StepSettings, TangentWeights, Vector3, Vector6, so3,
+};
+
+/// Mass of a tumbler [kg].
+const MASS: f64 = 2.0;
+
+/// A free body with three unlike moments of inertia; one of its points is tied to the origin by a
+/// spring.
+pub(crate) struct Tumbler {
+    pub inertia: Matrix3,
+    pub stiffness: f64,
+    /// From the centre of mass to the tied point, body axes [m].
+    pub arm: Vector3,
+    pub matrix: nalgebra::Matrix6<f64>,
+}
+
+impl Tumbler {
+    /// Tied at its centre: translation and rotation go their own ways.
+    pub(crate) fn free() -> Tumbler {
+        Tumbler {
+            inertia: Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 3.0)),
+            stiffness: 8.0,
+            arm: Vector3::zeros(),
+            matrix: nalgebra::Matrix6::zeros(),
+        }
+    }
+
+    /// Tied at another point: the spring turns the body, in all three directions.
+    pub(crate) fn tied() -> Tumbler {
+        Tumbler {
+            arm: Vector3::new(0.3, -0.2, 0.4),
+            ..Tumbler::free()
+        }
+    }
+
+    /// Beside the origin, moving and turning.
+    pub(crate) fn start(&self) -> MotionState {
+        let mut state = MotionState::at_rest(Configuration {
+            position: vec![Vector3::new(1.0, 0.0, 0.0)],
+            rotation: vec![Matrix3::identity()],
+        });
+        state.velocity[0] = Vector6::new(0.0, 1.0, 0.0, 0.3, 2.0, 0.5);
+        state.acceleration[0] = self.acceleration(&state);
+        state
+    }
+
+    /// Acceleration that satisfies the equations of motion.
+    fn acceleration(&self, state: &MotionState) -> Vector6 {
+        let r = state.configuration.rotation[0];
+        let still = self.force(
+            state.configuration.position[0],
+            r,
+            state.velocity[0],
+            Vector6::zeros(),
+        );
+        let turn: Vector3 = still.fixed_rows::<3>(3).into();
+        let inverse = self.inertia.map_diagonal(|moment| 1.0 / moment);
+        let alpha = -(r * Matrix3::from_diagonal(&inverse) * r.transpose() * turn);
+        let a = -still.fixed_rows::<3>(0) / MASS;
+        Vector6::new(a.x, a.y, a.z, alpha.x, alpha.y, alpha.z)
+    }
+
+    /// Inertia less the spring's force and moment.
+    fn force(&self, x: Vector3, r: Matrix3, velocity: Vector6, acceleration: Vector6) -> Vector6 {
+        let w: Vector3 = velocity.fixed_rows::<3>(3).into();
+        let alpha: Vector3 = acceleration.fixed_rows::<3>(3).into();
+        let j = r * self.inertia * r.transpose();
+        let arm = r * self.arm;
+        let spring = (x + arm) * self.stiffness;
+        let force = acceleration.fixed_rows::<3>(0) * MASS + spring;
+        let moment = j * alpha + w.cross(&(j * w)) + arm.cross(&spring);
+        Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z)
+    }
+
+    /// Kinetic energy and that of the spring [J].
+    pub(crate) fn energy(&self, state: &MotionState) -> f64 {
+        let r = state.configuration.rotation[0];
+        let v: Vector3 = state.velocity[0].fixed_rows::<3>(0).into();
+        let w: Vector3 = state.velocity[0].fixed_rows::<3>(3).into();
+        let stretch = state.configuration.position[0] + r * self.arm;
+        0.5 * (MASS * v.norm_squared()
+            + w.dot(&(r * self.inertia * r.transpose() * w))
+            + self.stiffness * stretch.norm_squared())
+    }
+
+    /// The motion after `duration` by the classical Runge-Kutta method, which shares nothing with
+    /// the implicit integrators: rotation matrices as nine plain numbers, `steps` steps.
+    pub(crate) fn runge_kutta(
+        &self,
+        start: &MotionState,
+        duration: f64,
+        steps: usize,
+    ) -> MotionState {
+        let h = duration / steps as f64;
+        let mut state = start.clone();
+        for _ in 0..steps {
+            let begin = state.clone();
+            let mut total = Slope::default();
+            let mut last = Slope::default();
+            for (reach, weight) in [(0.0, 1.0), (0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
+                let at = last.moved(&begin, reach * h);
+                last = Slope {
+                    velocity: at.velocity[0],
+                    spin: so3::hat(&at.velocity[0].fixed_rows::<3>(3).into())
+                        * at.configuration.rotation[0],
+                    acceleration: self.acceleration(&at),
+                };
+                total.velocity += last.velocity * (weight / 6.0);
+                total.spin += last.spin * (weight / 6.0);
+                total.acceleration += last.acceleration * (weight / 6.0);
+            }
+            state = total.moved(&begin, h);
+            state.configuration.orthonormalise();
+        }
+        state.acceleration[0] = self.acceleration(&state);
+        state
+    }
+}
+
+/// Time derivatives of a motion state of one frame.
+#[derive(Default)]
+struct Slope {
+    velocity: Vector6,
+    spin: Matrix3,
+    acceleration: Vector6,
+}
+
+impl Slope {
+    fn moved(&self, from: &MotionState, time: f64) -> MotionState {
+        let mut to = from.clone();
+        to.configuration.position[0] += self.velocity.fixed_rows::<3>(0) * time;
+        to.configuration.rotation[0] += self.spin * time;
+        to.velocity[0] += self.acceleration * time;
+        to
+    }
+}
+
+impl ImplicitSystem for Tumbler {
+    fn frame_count(&self) -> usize {
+        1
+    }
+
+    fn begin(&mut self) {}
+
+    fn assemble(
+        &mut self,
+        _time: f64,
+        state: &MotionState,
+        weights: Option<&TangentWeights<'_>>,
+        residual: &mut [Vector6],
+    ) {
+        let (x, r) = (
+            state.configuration.position[0],
+            state.configuration.rotation[0],
+        );
+        let (v, a) = (state.velocity[0], state.acceleration[0]);
+        residual[0] = self.force(x, r, v, a);
+        let Some(weights) = weights else { return };
+        let turn = weights.rotation.map_or(Matrix3::identity(), |list| list[0]);
+        let h = 1e-6;
+        for column in 0..6 {
+            let mut d = Vector6::zeros();
+            d[column] = h;
+            let theta = d.fixed_rows::<3>(3).into_owned();
+            let mut step = d;
+            step.fixed_rows_mut::<3>(3).copy_from(&(turn * theta));
+            let moved = |sign: f64| {
+                self.force(
+                    x + d.fixed_rows::<3>(0) * sign,
+                    so3::exp(&(theta * sign)) * r,
+                    v + step * (weights.velocity * sign),
+                    a + step * (weights.acceleration * sign),
+                )
+            };
+            self.matrix
+                .set_column(column, &((moved(1.0) - moved(-1.0)) / (2.0 * h)));
+        }
+    }
+
+    fn solve(&mut self, residual: &[Vector6], increment: &mut [Vector6]) -> Result<(), usize> {
+        increment[0] = -self.matrix.lu().solve(&residual[0]).ok_or(0usize)?;
+        Ok(())
+    }
+
+    fn residual_size(&self, residual: &[Vector6]) -> ResidualSize {
+        ResidualSize {
+            newtons: residual[0].norm(),
+            frame: 0,
+        }
+    }
+
+    fn increment_size(&self, increment: &[Vector6]) -> f64 {
+        increment[0].norm()
+    }
+}
+
+/// Settings of fixed steps.
+pub(crate) const FIXED: StepSettings = StepSettings {
+    newton: NewtonSettings {
+        tolerance_newtons: 1e-9,
+        max_iterations: 12,
+    },
+    allowed_error: None,
+};
+
+/// Takes steps of the given sizes; returns the orders that were used and all iterations.
+pub(crate) fn drive(
+    integrator: &mut dyn Integrator,
+    system: &mut dyn ImplicitSystem,
+    steps: &[f64],
+) -> (Vec<usize>, usize) {
+    let mut time = 0.0;
+    let mut iterations = 0;
+    let orders = steps
+        .iter()
+        .map(|&step| {
+            time += step;
+            let outcome = integrator
+                .advance(system, time, step, &FIXED)
+                .expect("the step converges");
+            integrator.accept();
+            iterations += outcome.iterations;
+            outcome.order
+        })
+        .collect();
+    (orders, iterations)
+}
+
+/// Distance of two configurations, over translations and rotations.
+pub(crate) fn distance(a: &MotionState, b: &MotionState) -> f64 {
+    a.configuration.difference(&b.configuration)[0].norm()
+}
