@@ -7,7 +7,7 @@
 use crate::differences::{self, MOST_POINTS, Weights};
 use crate::implicit::{ImplicitSystem, MotionState, TangentWeights};
 use crate::integrator::{self, Integrator, StepOutcome, StepSettings};
-use crate::newton::{Newton, NewtonFailure, Trial};
+use crate::newton::{Newton, NewtonFailure, Stage};
 use crate::{Configuration, Matrix3, Vector3, Vector6, so3};
 
 /// The highest order; beyond 6 the formulas are unstable, and 6 is hardly stable.
@@ -370,8 +370,8 @@ impl BdfStage {
     }
 }
 
-impl Trial for BdfStage {
-    fn state(&self) -> &MotionState {
+impl Stage for BdfStage {
+    fn trial(&self) -> &MotionState {
         &self.trial
     }
 

@@ -7,7 +7,7 @@
 
 use crate::implicit::{ImplicitSystem, MotionState, TangentWeights};
 use crate::integrator::{self, Integrator, StepOutcome, StepSettings};
-use crate::newton::{Newton, NewtonFailure, Trial};
+use crate::newton::{Newton, NewtonFailure, Stage};
 use crate::{Matrix3, Vector6, so3};
 
 /// The four coefficients of the method.
@@ -214,8 +214,8 @@ impl AlphaStage {
     }
 }
 
-impl Trial for AlphaStage {
-    fn state(&self) -> &MotionState {
+impl Stage for AlphaStage {
+    fn trial(&self) -> &MotionState {
         &self.trial
     }
 

@@ -39,10 +39,10 @@ pub struct NewtonFailure {
     pub singular: bool,
 }
 
-/// The state at the end of a step, and how an integrator lets Newton's method move it.
-pub(crate) trait Trial {
+/// A step being solved: the trial state at its end, and how an integrator lets Newton's method move it.
+pub(crate) trait Stage {
     /// The trial state.
-    fn state(&self) -> &MotionState;
+    fn trial(&self) -> &MotionState;
 
     /// Prepares [`Self::weights`] and [`Self::correct`] at the trial state.
     fn linearise(&mut self);
@@ -69,12 +69,12 @@ impl Newton {
         }
     }
 
-    /// Moves `trial` until its residual at `time` is small enough.
+    /// Moves `stage` until its residual at `time` is small enough.
     pub(crate) fn solve(
         &mut self,
         system: &mut dyn ImplicitSystem,
         time: f64,
-        trial: &mut dyn Trial,
+        stage: &mut dyn Stage,
         settings: &NewtonSettings,
     ) -> Result<NewtonOutcome, NewtonFailure> {
         system.begin();
@@ -85,14 +85,14 @@ impl Newton {
             // is only built when it does not.
             let mut converged = false;
             if iterations > 0 {
-                let residual = self.search_line(system, time, trial, iterations, previous);
+                let residual = self.search_line(system, time, stage, iterations, previous);
                 converged = residual <= settings.tolerance_newtons;
                 previous = residual;
             }
             if !converged {
-                trial.linearise();
-                let weights = trial.weights();
-                system.assemble(time, trial.state(), Some(&weights), &mut self.residual);
+                stage.linearise();
+                let weights = stage.weights();
+                system.assemble(time, stage.trial(), Some(&weights), &mut self.residual);
             }
             let residual = system.residual_size(&self.residual);
             let failure = NewtonFailure {
@@ -121,7 +121,7 @@ impl Newton {
                 })?;
             iterations += 1;
             system.moving(&self.increment);
-            trial.correct(&self.increment);
+            stage.correct(&self.increment);
         }
     }
 
@@ -132,13 +132,13 @@ impl Newton {
         &mut self,
         system: &mut dyn ImplicitSystem,
         time: f64,
-        trial: &mut dyn Trial,
+        stage: &mut dyn Stage,
         iterations: usize,
         previous: f64,
     ) -> f64 {
         let mut halvings = 0;
         loop {
-            system.assemble(time, trial.state(), None, &mut self.residual);
+            system.assemble(time, stage.trial(), None, &mut self.residual);
             let residual = system.residual_size(&self.residual).newtons;
             // A residual that is not a number is worse than any.
             let better = residual < previous;
@@ -147,7 +147,7 @@ impl Newton {
             }
             halvings += 1;
             self.increment.iter_mut().for_each(|d| *d *= -0.5);
-            trial.correct(&self.increment);
+            stage.correct(&self.increment);
             // What is left of the increment, for the next halving.
             self.increment.iter_mut().for_each(|d| *d *= -1.0);
         }
