@@ -9,6 +9,7 @@ pub mod body;
 pub mod contact;
 pub mod element;
 pub mod hydro;
+pub mod load;
 pub mod system;
 
 pub use analysis::dynamics::{DynamicsError, DynamicsReport, SolverStatistics, simulate};

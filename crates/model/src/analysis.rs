@@ -3,6 +3,8 @@
 /// How static equilibrium is sought.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StaticsSettings {
+    /// Whether an equilibrium is sought; if not, the motion starts at rest from the first shape.
+    pub equilibrium: bool,
     /// Whether the current acts in the static equilibrium.
     pub current: bool,
     /// Largest residual force at any element, as a fraction of the system's reference force [-].

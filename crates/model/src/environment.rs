@@ -5,14 +5,34 @@
 pub struct Environment {
     /// Gravity [m/s2].
     pub gravity: f64,
-    /// Density of the water [kg/m3].
-    pub water_density: f64,
-    /// Depth of the water below the mean surface [m].
-    pub water_depth: f64,
+    /// The water; `None` for a system in air or space: nothing is ever wet.
+    pub water: Option<Water>,
     /// The current.
     pub current: Current,
     /// Contact with the seabed; `None` leaves the seabed out (lines may pass through it).
     pub seabed: Option<Seabed>,
+}
+
+/// Water of one density under a mean surface at z = 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Water {
+    /// Density [kg/m3].
+    pub density: f64,
+    /// Depth below the mean surface [m].
+    pub depth: f64,
+}
+
+impl Environment {
+    /// Density of what surrounds the system: the water's, or zero [kg/m3].
+    pub fn fluid_density(&self) -> f64 {
+        self.water.map_or(0.0, |water| water.density)
+    }
+
+    /// Height of a seabed that acts [m].
+    pub fn seabed_height(&self) -> Option<f64> {
+        self.seabed?;
+        self.water.map(|water| -water.depth)
+    }
 }
 
 /// Horizontal current: a profile over depth, times a factor over time.

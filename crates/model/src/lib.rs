@@ -10,15 +10,17 @@ mod body;
 mod environment;
 pub mod file;
 mod line;
+mod load;
 mod motion;
 mod output;
 
 pub use analysis::{DynamicsSettings, IntegratorSettings, StaticsSettings, StepControl};
 pub use body::{Body, Vessel};
-pub use environment::{Current, CurrentPoint, Environment, Seabed};
+pub use environment::{Current, CurrentPoint, Environment, Seabed, Water};
 pub use line::{
     Attachment, EndConnection, Joint, Line, LineEnd, LineType, PipeWall, Section, SupportRef,
 };
+pub use load::{LoadPlace, LoadVariation, PointLoad};
 pub use motion::{Degree, Motion, TowLeg};
 pub use output::{
     Axis, Channel, ChannelTarget, Figure, LineQuantity, OutputSettings, Reference, Statistic,
@@ -42,6 +44,8 @@ pub struct Model {
     pub bodies: Vec<Body>,
     /// Bodies with prescribed motion, anchors (no motion) included.
     pub vessels: Vec<Vessel>,
+    /// Forces and moments on points of lines and bodies.
+    pub loads: Vec<PointLoad>,
     /// How static equilibrium is sought.
     pub statics: StaticsSettings,
     /// How the motion is integrated; `None` when the file describes statics only.

@@ -21,6 +21,8 @@ pub struct LineType {
     pub shear_stiffness: Option<f64>,
     /// Second moment of mass about the line's axis [kg m].
     pub polar_inertia: f64,
+    /// Second moment of mass of the section about the axes across the line [kg m].
+    pub rotary_inertia: f64,
     /// Stiffness-proportional structural damping time: damping = this x stiffness [s].
     pub structural_damping: f64,
     /// Normal drag coefficient, on the outer diameter [-].
@@ -84,6 +86,9 @@ pub struct Line {
     pub attachments: Vec<Attachment>,
     /// End A (`[0]`) and end B (`[1]`).
     pub ends: [LineEnd; 2],
+    /// Points of a polyline along which the elements are first laid, end A first, global, at least
+    /// two (n x 3) [m]; empty: an arc between the ends.
+    pub start_shape: Vec<[f64; 3]>,
 }
 
 impl Line {
@@ -125,6 +130,8 @@ pub struct EndConnection {
     pub direction_local: [f64; 3],
     /// The joint.
     pub joint: Joint,
+    /// Direction along which the joint's point slides freely, in local axes, unit (3) [-].
+    pub slides_along: Option<[f64; 3]>,
 }
 
 /// A vessel or a body, by index.

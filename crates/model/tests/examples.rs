@@ -57,7 +57,7 @@ fn schema_refuses_what_the_reader_refuses() {
         "titel = \"x\"\n",
         "[environment]\nwater.depth = \"m\"\n",
         "[environment]\nwater.depth = -1\n",
-        "[environment]\ngravity = 9.81\n",
+        "[environment]\ngravity = -9.81\n",
         "[environment]\nwater.depth = 100\n[dynamics]\n",
         "[environment]\nwater.depth = 100\n[lines.\"a b\"]\nsections = []\n",
         "[environment]\nwater.depth = 100\n[lines.a]\nsections = [{ type = \"x\" }]\n",

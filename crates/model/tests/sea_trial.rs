@@ -5,7 +5,7 @@ use std::path::Path;
 use approx::assert_relative_eq;
 use catenix_model::file::read_study;
 use catenix_model::{
-    Joint, LineEnd, Model, Motion, Statistic, StepControl, Study, SupportRef, TowLeg,
+    Joint, LineEnd, Model, Motion, Statistic, StepControl, Study, SupportRef, TowLeg, Water,
 };
 
 fn study() -> Study {
@@ -204,8 +204,14 @@ fn lines_bodies_and_vessels_are_the_reconstructed_ones() {
     let g = 9.80665;
     let sea = &model.environment;
     assert_eq!(
-        (sea.gravity, sea.water_density, sea.water_depth),
-        (g, 1025.0, 1000.0)
+        (sea.gravity, sea.water),
+        (
+            g,
+            Some(Water {
+                density: 1025.0,
+                depth: 1000.0
+            })
+        )
     );
     assert_eq!(sea.seabed, None);
     assert!(!model.statics.current);

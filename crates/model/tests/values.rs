@@ -59,7 +59,7 @@ fn connection(end: &LineEnd) -> &EndConnection {
 fn defaults_are_the_documented_ones() {
     let model = model("[dynamics]\nduration = \"200 s\"\n[environment.seabed]\n");
     assert_eq!(model.environment.gravity, 9.80665);
-    assert_eq!(model.environment.water_density, 1025.0);
+    assert_eq!(model.environment.fluid_density(), 1025.0);
     assert!(model.environment.current.profile.is_empty());
     let seabed = model.environment.seabed.unwrap();
     assert_eq!((seabed.normal_stiffness, seabed.normal_damping), (1e4, 1e3));
@@ -162,12 +162,10 @@ lines.rope.end_b.at = [0, 0, 1]
     let profile = &first.model.environment.current.profile;
     assert_eq!(profile.len(), 1);
     assert_eq!(profile[0].velocity, [0.0, 2.0]);
-    assert_eq!(first.model.environment.water_density, 1025.0);
+    assert_eq!(first.model.environment.fluid_density(), 1025.0);
     let environment = &second.model.environment;
-    assert_eq!(
-        (environment.water_density, environment.water_depth),
-        (1000.0, 100.0)
-    );
+    let water = environment.water.unwrap();
+    assert_eq!((water.density, water.depth), (1000.0, 100.0));
     assert_eq!(environment.current.profile.len(), 2);
     assert_eq!(second.model.lines[0].ends[1], LineEnd::Free);
     assert_eq!(second.model.vessels[0].position, [1.0, 2.0, 3.0]);

@@ -17,6 +17,7 @@ mod junctions;
 mod newton;
 pub mod so3;
 pub mod spline;
+pub mod time_table;
 #[cfg(test)]
 mod test_systems;
 

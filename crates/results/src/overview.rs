@@ -9,8 +9,8 @@ use serde::Serialize;
 /// What a model consists of. The keys are a public interface, described in docs/cli.md.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelOverview {
-    /// Depth of the water [m].
-    pub water_depth_m: f64,
+    /// Depth of the water [m]; null without water.
+    pub water_depth_m: Option<f64>,
     /// Current at the surface; null without current.
     pub surface_current: Option<CurrentOverview>,
     /// Elements of all lines.
@@ -104,7 +104,7 @@ impl ModelOverview {
             (vessel.name.clone(), overview)
         });
         ModelOverview {
-            water_depth_m: environment.water_depth,
+            water_depth_m: environment.water.map(|water| water.depth),
             surface_current: surface_current(environment),
             elements: model.lines.iter().map(Line::element_count).sum(),
             duration_s: model.dynamics.as_ref().map(|dynamics| dynamics.duration),
@@ -157,7 +157,7 @@ fn line_overview(line: &Line, model: &Model) -> LineOverview {
 
 /// Weight less buoyancy, fully under water [N].
 fn wet_weight_n(mass: f64, volume: f64, environment: &Environment) -> f64 {
-    environment.gravity * (mass - environment.water_density * volume)
+    environment.gravity * (mass - environment.fluid_density() * volume)
 }
 
 fn surface_current(environment: &Environment) -> Option<CurrentOverview> {

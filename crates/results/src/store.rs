@@ -194,7 +194,9 @@ fn case_attributes(case: &LoadCase) -> Attributes {
     let layout_text = serde_json::to_string(&layout::case_layout(case)).unwrap_or_default();
     attributes.insert(layout::LAYOUT_KEY.into(), layout_text.into());
     let mut insert = |key: &str, value: f64| attributes.insert(key.to_owned(), value.into());
-    insert("water_depth_m", model.environment.water_depth);
+    if let Some(water) = model.environment.water {
+        insert("water_depth_m", water.depth);
+    }
     insert("output_interval_s", model.output.interval);
     insert("field_interval_s", model.output.field_interval);
     insert("statics_tolerance", model.statics.tolerance);

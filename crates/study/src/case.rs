@@ -261,6 +261,7 @@ fn dynamics_facts(report: &DynamicsReport) -> DynamicsFacts {
         work_seabed_j,
         work_structural_damping_j,
         work_moved_ends_j,
+        work_loads_j,
         imbalance,
     } = report.energy;
     DynamicsFacts {
@@ -282,6 +283,7 @@ fn dynamics_facts(report: &DynamicsReport) -> DynamicsFacts {
             ("work_seabed_j", work_seabed_j),
             ("work_structural_damping_j", work_structural_damping_j),
             ("work_moved_ends_j", work_moved_ends_j),
+            ("work_loads_j", work_loads_j),
         ],
         energy_imbalance: imbalance,
     }

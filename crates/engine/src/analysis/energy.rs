@@ -27,6 +27,8 @@ pub struct EnergyAccount {
     pub work_structural_damping_j: f64,
     /// Work of the moved ends [J].
     pub work_moved_ends_j: f64,
+    /// Work of point loads [J].
+    pub work_loads_j: f64,
     /// Change of stored energy less all works, over the largest of the energies: moved (the sum of
     /// absolute works of each kind) or held (kinetic and elastic at the end) [-]. Zero for an exact integration.
     pub imbalance: f64,
@@ -37,8 +39,8 @@ pub struct EnergyAccount {
 pub(super) struct EnergyLedger {
     first: EnergyTerms,
     last: EnergyTerms,
-    works: [f64; 6],
-    moved: [f64; 6],
+    works: [f64; 7],
+    moved: [f64; 7],
 }
 
 impl EnergyLedger {
@@ -46,15 +48,15 @@ impl EnergyLedger {
         EnergyLedger {
             first: start,
             last: start,
-            works: [0.0; 6],
-            moved: [0.0; 6],
+            works: [0.0; 7],
+            moved: [0.0; 7],
         }
     }
 
     /// Adds a step by the trapezoidal rule on the powers.
     pub(super) fn add(&mut self, step: f64, terms: EnergyTerms) {
         let (old, new) = (self.last.powers(), terms.powers());
-        for k in 0..6 {
+        for k in 0..self.works.len() {
             let work = 0.5 * step * (old[k] + new[k]);
             self.works[k] += work;
             self.moved[k] += work.abs();
@@ -75,7 +77,7 @@ impl EnergyLedger {
             .moved
             .iter()
             .fold(held.max(stored_change.abs()), |a, &b| a.max(b));
-        let [drag, added_mass, buoyancy, seabed, damping, ends] = self.works;
+        let [drag, added_mass, buoyancy, seabed, damping, ends, loads] = self.works;
         EnergyAccount {
             kinetic_j: self.last.kinetic,
             elastic_j: self.last.elastic,
@@ -87,6 +89,7 @@ impl EnergyLedger {
             work_seabed_j: seabed,
             work_structural_damping_j: damping,
             work_moved_ends_j: ends,
+            work_loads_j: loads,
             imbalance: if scale > 0.0 {
                 (stored_change - total) / scale
             } else {

@@ -59,7 +59,7 @@ pub struct StaticSolution<'a> {
     state: MotionState,
     /// Newton iterations that it took.
     pub iterations: usize,
-    /// Largest residual force [N].
+    /// Largest residual force [N]; of the first shape, where no equilibrium was sought.
     pub residual_n: f64,
     /// Remarks for the user, for example on motions that nothing resists.
     pub warnings: Vec<String>,
@@ -124,7 +124,8 @@ pub enum StaticsError {
     },
 }
 
-/// Finds the static equilibrium at t = 0.
+/// Finds the static equilibrium at t = 0; or takes the first shape as it is, where the model asks
+/// for no equilibrium. Loads have their values at t = 0.
 ///
 /// `progress` is called after every iteration and may stop the search.
 ///
@@ -137,6 +138,16 @@ pub fn solve_statics<'a>(
     let settings = &system.model().statics;
     let solver = SystemSolver::at_rest(system, settings.current);
     let mut search = Search::new(solver, system.first_shape().clone(), progress);
+    if !settings.equilibrium {
+        search.static_residual();
+        return Ok(StaticSolution {
+            solver: search.solver,
+            state: search.state,
+            iterations: 0,
+            residual_n: search.residual.newtons,
+            warnings: Vec::new(),
+        });
+    }
     let allowed = system.allowed_residual(settings.tolerance);
     search.run(allowed, settings.max_iterations)?;
     let Search {

@@ -5,6 +5,7 @@
 use std::f64::consts::TAU;
 
 use catenix_model::{Motion, TowLeg, Vessel};
+use catenix_numerics::time_table::smooth_step;
 use catenix_numerics::{Matrix3, Vector3, so3, spline::Spline};
 
 /// State of a prescribed body.
@@ -50,24 +51,6 @@ enum Part {
         ramp: f64,
     },
     History(Box<[Option<Spline>; 6]>),
-}
-
-/// Quintic smooth step from 0 to 1 with its derivative and its integral from 0.
-///
-/// Source: docs/theory/motions.md, eq. (1).
-fn smooth_step(s: f64) -> [f64; 3] {
-    if s <= 0.0 {
-        return [0.0, 0.0, 0.0];
-    }
-    if s >= 1.0 {
-        return [1.0, 0.0, 0.5 + (s - 1.0)];
-    }
-    let cube = s * s * s;
-    [
-        cube * (10.0 + s * (-15.0 + 6.0 * s)),
-        30.0 * s * s * (1.0 - s) * (1.0 - s),
-        cube * s * (2.5 + s * (-3.0 + s)),
-    ]
 }
 
 impl PrescribedMotion {

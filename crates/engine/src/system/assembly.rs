@@ -5,6 +5,8 @@ use catenix_numerics::{
 };
 
 use super::frames::{self, FrameMotion, FrameWeights, Sea};
+use super::loads;
+use super::slide::SlideState;
 use super::{Carrier, Connector, ConnectorLaw, Mount, Place, System};
 use crate::body::motion::RigidMotion;
 use crate::element::dem::connector::{ConnectorState, Prediction};
@@ -18,12 +20,51 @@ pub(super) enum PairState {
     Joint(JointState),
 }
 
+impl PairState {
+    fn new(law: &ConnectorLaw, first: &Side, second: &Side) -> PairState {
+        match law {
+            ConnectorLaw::Beam(law) => PairState::Beam(ConnectorState::new(law, first, second)),
+            ConnectorLaw::Joint(law) => PairState::Joint(JointState::new(law, first, second)),
+        }
+    }
+
+    fn forces(&self, first: &Side, second: &Side) -> PairForces {
+        match self {
+            PairState::Beam(state) => state.forces(first, second),
+            PairState::Joint(state) => state.forces(first, second),
+        }
+    }
+
+    /// Direction in which the axial stiffness acts.
+    fn axis(&self, second: &Side) -> Vector3 {
+        match self {
+            PairState::Beam(state) => state.axis,
+            PairState::Joint(_) => second.rotation.column(0).into(),
+        }
+    }
+
+    /// Elastic force on the second side that the geometric part of the tangent uses [N].
+    fn geometric_force(
+        &self,
+        law: &ConnectorLaw,
+        second: &Side,
+        prediction: Option<&Prediction>,
+    ) -> Vector3 {
+        let predicted = prediction.map(|p| p.force(law.stiffness(), &self.axis(second)));
+        match self {
+            PairState::Beam(state) => predicted.unwrap_or(state.elastic.force),
+            PairState::Joint(state) => -predicted.unwrap_or(state.elastic),
+        }
+    }
+}
+
 /// A connector with its two sides, as last evaluated.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct EvaluatedPair {
     pub first: Side,
     pub second: Side,
     pub state: PairState,
+    slide: Option<SlideState>,
 }
 
 impl EvaluatedPair {
@@ -32,24 +73,41 @@ impl EvaluatedPair {
         state: &MotionState,
         vessels: &[RigidMotion],
     ) -> EvaluatedPair {
-        let first = side(&connector.first, state, vessels);
-        let second = side(&connector.second, state, vessels);
-        let state = match &connector.law {
-            ConnectorLaw::Beam(law) => PairState::Beam(ConnectorState::new(law, &first, &second)),
-            ConnectorLaw::Joint(law) => PairState::Joint(JointState::new(law, &first, &second)),
-        };
+        let mut first = side(&connector.first, state, vessels);
+        let mut second = side(&connector.second, state, vessels);
+        let law = &connector.law;
+        let slide = connector.slide.map(|slide| {
+            let still = PairState::new(law, &first, &second);
+            let along = still.axis(&second);
+            slide.settle(
+                &mut first,
+                &mut second,
+                |first, second| {
+                    let forces = still.forces(first, second);
+                    let on_support = if slide.support_first {
+                        forces.first
+                    } else {
+                        forces.second
+                    };
+                    on_support.fixed_rows::<3>(0).into_owned()
+                },
+                |axis| {
+                    let stiffness = law.stiffness();
+                    let along = along.dot(axis);
+                    stiffness.shear + (stiffness.axial - stiffness.shear) * along * along
+                },
+            )
+        });
         EvaluatedPair {
             first,
             second,
-            state,
+            state: PairState::new(law, &first, &second),
+            slide,
         }
     }
 
     pub(super) fn forces(&self) -> PairForces {
-        match &self.state {
-            PairState::Beam(state) => state.forces(&self.first, &self.second),
-            PairState::Joint(state) => state.forces(&self.first, &self.second),
-        }
+        self.state.forces(&self.first, &self.second)
     }
 
     pub(super) fn energy(&self, law: &ConnectorLaw) -> f64 {
@@ -68,13 +126,13 @@ impl EvaluatedPair {
     }
 
     fn tangent(
-        &self,
+        &mut self,
         law: &ConnectorLaw,
         prediction: Option<&Prediction>,
         rates: &RateWeights,
     ) -> PairTangent {
         let (first, second) = (&self.first, &self.second);
-        match (&self.state, law) {
+        let mut tangent = match (&self.state, law) {
             (PairState::Beam(state), ConnectorLaw::Beam(law)) => {
                 state.tangent(law, first, second, prediction, rates)
             }
@@ -82,7 +140,12 @@ impl EvaluatedPair {
                 state.tangent(law, first, second, prediction, rates)
             }
             _ => unreachable!("a state is made by its own law"),
+        };
+        if let Some(slide) = &mut self.slide {
+            let force = self.state.geometric_force(law, second, prediction);
+            slide.condense(&mut tangent, &force);
         }
+        tangent
     }
 
     /// Mixed unknowns after a linear solution.
@@ -94,7 +157,11 @@ impl EvaluatedPair {
             ),
             Carrier::Vessel(_) => (Vector3::zeros(), Vector3::zeros()),
         };
-        let (a, b) = (split(&connector.first), split(&connector.second));
+        let mut moves = [split(&connector.first), split(&connector.second)];
+        if let Some(slide) = &self.slide {
+            slide.carry(&mut moves);
+        }
+        let [a, b] = &moves;
         let (a, b) = ((&a.0, &a.1), (&b.0, &b.1));
         match &self.state {
             PairState::Beam(state) => state.predicted(&self.first, &self.second, a, b),
@@ -152,6 +219,7 @@ pub(super) fn assemble(
     system: &System,
     sea: &Sea<'_>,
     vessels: &[RigidMotion],
+    load_factors: &[f64],
     state: &MotionState,
     weights: Option<&TangentWeights<'_>>,
     predictions: Option<&[Prediction]>,
@@ -198,8 +266,10 @@ pub(super) fn assemble(
             tangent,
         );
     }
+    let loaded = weights.is_some().then_some(&mut *matrix);
+    loads::add_loads(system, load_factors, state, residual, loaded);
     for (index, connector) in system.connectors.iter().enumerate() {
-        let pair = EvaluatedPair::new(connector, state, vessels);
+        let mut pair = EvaluatedPair::new(connector, state, vessels);
         let forces = pair.forces();
         for (mount, force) in [
             (&connector.first, &forces.first),

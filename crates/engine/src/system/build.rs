@@ -1,11 +1,13 @@
 //! From the model to the assembled system.
 
 use catenix_model::{
-    Attachment, Body, EndConnection, Joint, Line, LineEnd, LineType, Model, SupportRef,
+    Attachment, Body, EndConnection, Joint, Line, LineEnd, LineType, Model, PointLoad, SupportRef,
 };
 use catenix_numerics::{Chain, Configuration, Matrix3, Topology, Vector3, so3};
 
+use super::loads;
 use super::shape::{self, Supports};
+use super::slide::Slide;
 use super::{
     Carrier, Connector, ConnectorLaw, Frame, FrameLump, LineLayout, Mount, Place, System,
     SystemError,
@@ -20,6 +22,9 @@ use crate::hydro::morison::DragCoefficients;
 /// Share of an element's length within which a lump counts as sitting at the element's end; it is
 /// then shared by the two neighbours.
 const END_SHARE: f64 = 1e-6;
+
+/// Gravity that weighs a system where there is none [m/s2].
+const EARTH_GRAVITY: f64 = 9.80665;
 
 /// Roundings, of the size of the coordinates, that add up in the gap of a connector.
 const ROUND_OFF: f64 = 4.0;
@@ -61,34 +66,59 @@ pub(super) fn build(model: &Model) -> Result<System, SystemError> {
             &mut connectors,
         )?;
     }
-    let reference_force = frames.iter().map(|frame| frame.mass).sum::<f64>() * 9.80665
-        + lumps
-            .iter()
-            .map(|lump| lump.buoyancy.max(lump.weight))
-            .sum::<f64>();
-    // Forces below this are round-off: the stiffest spring times the spacing of numbers as large
-    // as the coordinates.
-    let stiffest = connectors
-        .iter()
-        .map(|connector| connector.law.stiffness())
-        .fold(0.0, |largest: f64, k| largest.max(k.axial).max(k.shear));
-    let furthest = shape.position.iter().map(|x| x.amax()).fold(1.0, f64::max);
-    let residual_floor = ROUND_OFF * f64::EPSILON * furthest * stiffest;
+    let loads = loads::place(&model.loads, &lines, &shape, element_count);
     let reference_length = model.lines.iter().map(Line::length).fold(1.0, f64::max);
+    let reference_force = reference_force(model, &frames, &lumps, reference_length);
+    let furthest = shape.position.iter().map(|x| x.amax()).fold(1.0, f64::max);
     Ok(System {
         topology: Topology::new(chains, frames.len()),
         current: CurrentField::new(&model.environment.current),
         model: model.clone(),
         frames,
         lumps,
+        loads,
+        residual_floor: residual_floor(&connectors, furthest),
         connectors,
         lines,
         vessels,
         first_shape: shape,
         reference_force,
         reference_length,
-        residual_floor,
     })
+}
+
+/// Force that tolerances are relative to: weight and loads, or, where there is neither, the
+/// weight that the masses would have on earth [N].
+///
+/// Source: docs/theory/solver.md, eq. (7).
+fn reference_force(model: &Model, frames: &[Frame], lumps: &[FrameLump], length: f64) -> f64 {
+    let weight = frames.iter().map(|frame| frame.weight).sum::<f64>()
+        + lumps
+            .iter()
+            .map(|lump| lump.buoyancy.max(lump.weight))
+            .sum::<f64>();
+    let size = |load: &PointLoad| {
+        Vector3::from(load.force).norm() + Vector3::from(load.moment).norm() / length
+    };
+    let scale = weight + model.loads.iter().map(size).sum::<f64>();
+    if scale > 0.0 {
+        return scale;
+    }
+    let mass = frames.iter().map(|frame| frame.mass).sum::<f64>()
+        + lumps.iter().map(|lump| lump.lump.mass).sum::<f64>();
+    mass * EARTH_GRAVITY
+}
+
+/// Forces below this are round-off: the stiffest spring times the spacing of numbers as large as
+/// the coordinates [N].
+///
+/// Source: docs/theory/solver.md, eq. (8).
+fn residual_floor(connectors: &[Connector], furthest: f64) -> f64 {
+    let stiffest = connectors
+        .iter()
+        .map(|connector| connector.law.stiffness())
+        .fold(0.0, |largest: f64, k| largest.max(k.axial).max(k.shear));
+    ROUND_OFF * f64::EPSILON * furthest * stiffest
 }
 
 fn lay_out(line: &Line, first_frame: usize) -> LineLayout {
@@ -115,20 +145,15 @@ fn lay_out(line: &Line, first_frame: usize) -> LineLayout {
 ///
 /// Source: docs/theory/dem.md, eq. (22), and docs/theory/hydrodynamics.md, eqs. (2) to (7).
 fn element_frame(model: &Model, line_type: &LineType, length: f64) -> Frame {
-    let water = model.environment.water_density;
+    let water = model.environment.fluid_density();
     let area = 0.25 * std::f64::consts::PI * line_type.outer_diameter.powi(2);
     let displaced = water * area * length;
     let mass = line_type.mass * length;
     let radius_squared = length * length / 12.0;
     let added_normal = line_type.normal_added_mass * displaced;
     let half_flow = 0.5 * water * line_type.outer_diameter * length;
-    // A line that is flexible in shear also has the rotary inertia of its section, half the
-    // polar one; Euler-Bernoulli has neither.
-    let section = match line_type.shear_stiffness {
-        Some(_) => 0.5 * line_type.polar_inertia * length,
-        None => 0.0,
-    };
-    let normal_inertia = mass * radius_squared * rotary_share(line_type, length) + section;
+    let normal_inertia =
+        mass * radius_squared * rotary_share(line_type, length) + line_type.rotary_inertia * length;
     Frame {
         axis: Vector3::x(),
         length,
@@ -156,7 +181,7 @@ fn element_frame(model: &Model, line_type: &LineType, length: f64) -> Frame {
 }
 
 fn body_frame(model: &Model, body: &Body) -> Frame {
-    let water = model.environment.water_density;
+    let water = model.environment.fluid_density();
     let radius_squared = body.length * body.length / 12.0;
     let sphere = (6.0 * body.volume / std::f64::consts::PI).cbrt();
     let gyration = (body.inertia.iter().fold(0.0f64, |a, &b| a.max(b)) / body.mass).sqrt();
@@ -175,15 +200,41 @@ fn body_frame(model: &Model, body: &Body) -> Frame {
             axial: 0.5 * water * body.axial_drag_area,
             radius_squared,
         },
-        added_normal: body.normal_added_mass,
-        added_axial: body.axial_added_mass,
-        added_inertia: body.normal_added_mass * radius_squared,
+        added_normal: in_water(model, body.normal_added_mass),
+        added_axial: in_water(model, body.axial_added_mass),
+        added_inertia: in_water(model, body.normal_added_mass) * radius_squared,
         weight: body.mass * model.environment.gravity,
         buoyancy: water * body.volume * model.environment.gravity,
         buoyancy_arm: Vector3::from(body.centre_of_buoyancy),
         seabed_length: body.length.max(sphere),
         residual_length: body.length.max(gyration).max(1e-3),
     }
+}
+
+/// The element that holds an arc length, with the distance from its centre [m] and its share: all,
+/// or a half each where two elements meet.
+pub(super) fn shares_at(layout: &LineLayout, arc_length: f64) -> Vec<(usize, f64, f64)> {
+    let total = layout.arc_length[layout.element_count];
+    let at = arc_length.clamp(0.0, total);
+    let after = layout.arc_length.partition_point(|&s| s <= at);
+    let element = after.saturating_sub(1).min(layout.element_count - 1);
+    let (start, end) = (layout.arc_length[element], layout.arc_length[element + 1]);
+    let length = end - start;
+    if (at - start).abs() < END_SHARE * length && element > 0 {
+        let before = start - layout.arc_length[element - 1];
+        return vec![
+            (element - 1, 0.5 * before, 0.5),
+            (element, -0.5 * length, 0.5),
+        ];
+    }
+    if (end - at).abs() < END_SHARE * length && element + 1 < layout.element_count {
+        let next = layout.arc_length[element + 2] - end;
+        return vec![
+            (element, 0.5 * length, 0.5),
+            (element + 1, -0.5 * next, 0.5),
+        ];
+    }
+    vec![(element, at - 0.5 * (start + end), 1.0)]
 }
 
 /// Puts a lump on the element that holds its arc length, or half on each of two neighbours.
@@ -194,42 +245,30 @@ fn place_attachment(
     lumps: &mut Vec<FrameLump>,
 ) {
     let environment = &model.environment;
-    let total = layout.arc_length[layout.element_count];
-    let at = attachment.arc_length.clamp(0.0, total);
-    let after = layout.arc_length.partition_point(|&s| s <= at);
-    let element = after.saturating_sub(1).min(layout.element_count - 1);
-    let (start, end) = (layout.arc_length[element], layout.arc_length[element + 1]);
-    let length = end - start;
-    let mut shares = vec![(element, at - 0.5 * (start + end), 1.0)];
-    if (at - start).abs() < END_SHARE * length && element > 0 {
-        let before = start - layout.arc_length[element - 1];
-        shares = vec![
-            (element - 1, 0.5 * before, 0.5),
-            (element, -0.5 * length, 0.5),
-        ];
-    } else if (end - at).abs() < END_SHARE * length && element + 1 < layout.element_count {
-        let next = layout.arc_length[element + 2] - end;
-        shares = vec![
-            (element, 0.5 * length, 0.5),
-            (element + 1, -0.5 * next, 0.5),
-        ];
-    }
-    for (element, offset, share) in shares {
+    let water = environment.fluid_density();
+    for (element, offset, share) in shares_at(layout, attachment.arc_length) {
         let weight = share * attachment.mass * environment.gravity;
         let volume = share * attachment.volume;
-        let buoyancy = volume * environment.water_density * environment.gravity;
         lumps.push(FrameLump {
             frame: layout.first_frame + element,
             arm: Vector3::new(offset, 0.0, 0.0),
             lump: Lump {
                 mass: share * attachment.mass,
-                added_mass: share * attachment.added_mass,
-                drag: share * 0.5 * environment.water_density * attachment.drag_area,
+                added_mass: share * in_water(model, attachment.added_mass),
+                drag: share * 0.5 * water * attachment.drag_area,
             },
             weight,
-            buoyancy,
+            buoyancy: volume * water * environment.gravity,
             diameter: (6.0 * attachment.volume / std::f64::consts::PI).cbrt(),
         });
+    }
+}
+
+/// What there is in water only: added mass given in kilograms.
+fn in_water(model: &Model, added_mass: f64) -> f64 {
+    match model.environment.water {
+        Some(_) => added_mass,
+        None => 0.0,
     }
 }
 
@@ -286,6 +325,7 @@ fn connect(
                     first: mount(layout, node - 1, true).shifted(&shift),
                     second: mount(layout, node, false).shifted(&shift),
                     place: Place::Link(layout.first_frame + node - 1),
+                    slide: None,
                 }
             }
             Some(end) => {
@@ -340,7 +380,17 @@ fn end_connector(
     let point = Vector3::from(connection.point_local);
     let direction = Vector3::from(connection.direction_local);
     let tangent: Vector3 = element_rotation.column(0).into();
-    let stiffness = ConnectorStiffness::clamp(half, end == 0);
+    let mut stiffness = ConnectorStiffness::clamp(half, end == 0);
+    if connection.slides_along.is_some() {
+        // The condensed slide has no rate.
+        stiffness.damping = 0.0;
+    }
+    let slide = |axes: &Matrix3, support_first| {
+        connection.slides_along.map(|axis| Slide {
+            support_first,
+            axis: axes.transpose() * Vector3::from(axis),
+        })
+    };
     let place = match (connection.to, end) {
         (SupportRef::Vessel(_), _) => Place::Grounded,
         (SupportRef::Body(_), 0) => Place::Head(line),
@@ -356,7 +406,8 @@ fn end_connector(
     let untwisted = so3::shortest_arc(&tangent, &(support.rotation * direction)) * element_rotation;
     if connection.joint == Joint::Fixed {
         let shift = Vector3::x() * stiffness.shift;
-        let clamp = on_support(support.rotation.transpose() * untwisted).shifted(&shift);
+        let axes = support.rotation.transpose() * untwisted;
+        let clamp = on_support(axes).shifted(&shift);
         let element = element.shifted(&shift);
         let (first, second) = if end == 0 {
             (clamp, element)
@@ -368,6 +419,7 @@ fn end_connector(
             first,
             second,
             place,
+            slide: slide(&axes, end == 0),
         };
     }
     let torsion = 2.0 * half.line_type.torsional_stiffness / half.length;
@@ -419,5 +471,6 @@ fn end_connector(
         first: on_support(Matrix3::identity()),
         second: element,
         place,
+        slide: slide(&Matrix3::identity(), true),
     }
 }

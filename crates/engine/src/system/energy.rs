@@ -4,6 +4,7 @@ use catenix_numerics::MotionState;
 
 use super::assembly::frame_motion;
 use super::frames::{self, LoadPowers};
+use super::loads;
 use super::solver::SystemSolver;
 use super::{Carrier, Mount};
 
@@ -28,6 +29,8 @@ pub struct EnergyTerms {
     pub structural_damping: f64,
     /// Power of the moved ends [W].
     pub moved_ends: f64,
+    /// Power of point loads [W].
+    pub loads: f64,
 }
 
 impl EnergyTerms {
@@ -37,7 +40,7 @@ impl EnergyTerms {
     }
 
     /// All powers, in the order of the account.
-    pub fn powers(&self) -> [f64; 6] {
+    pub fn powers(&self) -> [f64; 7] {
         [
             self.drag,
             self.added_mass,
@@ -45,6 +48,7 @@ impl EnergyTerms {
             self.seabed,
             self.structural_damping,
             self.moved_ends,
+            self.loads,
         ]
     }
 }
@@ -72,6 +76,7 @@ impl SystemSolver<'_> {
                 &sea,
             ));
         }
+        terms.loads = loads::power(self.system, &self.load_factors, state);
         for (pair, connector) in self.pairs.iter().zip(&self.system.connectors) {
             terms.elastic += pair.energy(&connector.law);
             terms.structural_damping += pair.damping_power();

@@ -4,10 +4,13 @@
 //! Frames are numbered line by line, element by element from end A to end B, then the bodies.
 
 mod assembly;
+mod balance;
 mod build;
 mod energy;
 mod frames;
+mod loads;
 mod shape;
+mod slide;
 mod solver;
 mod view;
 
@@ -24,7 +27,9 @@ use crate::element::dem::joint::JointStiffness;
 use crate::element::dem::stiffness::ConnectorStiffness;
 use crate::hydro::current::CurrentField;
 use crate::hydro::morison::DragCoefficients;
+use crate::load::variation;
 
+pub use balance::Momentum;
 pub use energy::EnergyTerms;
 pub use solver::SystemSolver;
 pub use view::StepView;
@@ -52,6 +57,7 @@ pub struct System {
     pub(crate) model: Model,
     pub(crate) frames: Vec<Frame>,
     pub(crate) lumps: Vec<FrameLump>,
+    pub(crate) loads: Vec<loads::FrameLoad>,
     pub(crate) connectors: Vec<Connector>,
     pub(crate) lines: Vec<LineLayout>,
     pub(crate) vessels: Vec<PrescribedMotion>,
@@ -158,6 +164,8 @@ pub(crate) struct Connector {
     pub first: Mount,
     pub second: Mount,
     pub place: Place,
+    /// Along which the support's side slides freely.
+    pub slide: Option<slide::Slide>,
 }
 
 #[derive(Debug, Clone)]
@@ -345,7 +353,9 @@ impl System {
 
     /// Times at which loads bend or jump: a step should end there.
     pub(crate) fn load_events(&self) -> impl Iterator<Item = LoadEvent> + '_ {
-        let events = self.current.events();
+        let loads = self.model.loads.iter();
+        let of_loads = loads.flat_map(|load| variation::events(&load.variation));
+        let events = self.current.events().chain(of_loads);
         events.map(|(time, jump)| LoadEvent { time, jump })
     }
 

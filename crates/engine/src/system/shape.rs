@@ -95,15 +95,23 @@ fn net_weight(model: &Model, line: &Line) -> f64 {
             let line_type = &model.line_types[section.line_type];
             let area = 0.25 * std::f64::consts::PI * line_type.outer_diameter.powi(2);
             let length: f64 = section.element_lengths.iter().sum();
-            (line_type.mass - environment.water_density * area) * length
+            (line_type.mass - environment.fluid_density() * area) * length
         })
         .sum();
     let lumps: f64 = line
         .attachments
         .iter()
-        .map(|lump| lump.mass - environment.water_density * lump.volume)
+        .map(|lump| lump.mass - environment.fluid_density() * lump.volume)
         .sum();
     (sections + lumps) * environment.gravity
+}
+
+/// Height of the surface; without water there is none [m].
+fn surface(model: &Model) -> f64 {
+    match model.environment.water {
+        Some(_) => 0.0,
+        None => f64::INFINITY,
+    }
 }
 
 /// Moves the bodies without a given position down (or up) as far as the lines allow.
@@ -127,7 +135,7 @@ fn settle(model: &Model, supports: &mut Supports) {
     let mut pull: Vec<f64> = model
         .bodies
         .iter()
-        .map(|body| (body.mass - environment.water_density * body.volume) * environment.gravity)
+        .map(|body| (body.mass - environment.fluid_density() * body.volume) * environment.gravity)
         .collect();
     for line in &model.lines {
         for body in line.ends.iter().filter_map(body_of) {
@@ -165,17 +173,21 @@ fn settle(model: &Model, supports: &mut Supports) {
         }
     }
     let longest = model.lines.iter().map(Line::length).fold(0.0, f64::max);
-    let floor = -environment.water_depth;
+    // What floats rises to the surface and no further.
+    let surface = surface(model);
+    let floor = environment.seabed_height().unwrap_or(f64::NEG_INFINITY);
     for round in 0..ROUNDS {
         let step = longest * 0.05 * (1.0 - round as f64 / ROUNDS as f64);
         for (index, body) in supports.bodies.iter_mut().enumerate() {
             if !fixed[index] {
-                // What floats rises to the surface and no further.
-                let ceiling = body.position.z.max(0.0);
-                body.position.z = (body.position.z - step * pull[index].signum()).min(ceiling);
-                if environment.seabed.is_some() {
-                    body.position.z = body.position.z.max(floor);
-                }
+                let ceiling = body.position.z.max(surface);
+                // Without weight and buoyancy nothing pulls.
+                let way = if pull[index] == 0.0 {
+                    0.0
+                } else {
+                    step * pull[index].signum()
+                };
+                body.position.z = (body.position.z - way).min(ceiling).max(floor);
             }
         }
         for line in &model.lines {
@@ -243,6 +255,9 @@ fn line_points(
     supports: &Supports,
 ) -> Vec<Vector3> {
     let length = line.length();
+    if !line.start_shape.is_empty() {
+        return along_polyline(line, layout);
+    }
     let down = if net_weight(model, line) >= 0.0 {
         -Vector3::z()
     } else {
@@ -250,7 +265,16 @@ fn line_points(
     };
     let ends = [supports.point(&line.ends[0]), supports.point(&line.ends[1])];
     let away = |end: usize, start: &Vector3| {
-        loose_direction(&line.ends[end], end, start, length, &down, supports) * length
+        let surface = surface(model);
+        loose_direction(
+            &line.ends[end],
+            end,
+            start,
+            length,
+            &down,
+            surface,
+            supports,
+        ) * length
     };
     let (a, b) = match ends {
         [Some(a), Some(b)] => (a, b),
@@ -259,11 +283,8 @@ fn line_points(
         [None, None] => (Vector3::zeros(), down * length),
     };
     // Lines start under water, where the water carries them.
-    let ceiling = a.z.max(b.z).max(0.0);
-    let floor = model
-        .environment
-        .seabed
-        .map(|_| -model.environment.water_depth);
+    let ceiling = a.z.max(b.z).max(surface(model));
+    let floor = model.environment.seabed_height();
     layout
         .arc_length
         .iter()
@@ -278,6 +299,25 @@ fn line_points(
         .collect()
 }
 
+/// Node positions along the line's start shape, at equal shares of both lengths.
+fn along_polyline(line: &Line, layout: &LineLayout) -> Vec<Vector3> {
+    let points: Vec<Vector3> = line.start_shape.iter().map(|p| Vector3::from(*p)).collect();
+    let mut distance = vec![0.0];
+    for pair in points.windows(2) {
+        distance.push(distance[distance.len() - 1] + (pair[1] - pair[0]).norm());
+    }
+    let total = distance[distance.len() - 1];
+    let length = line.length();
+    let at = |s: &f64| {
+        let way = s / length * total;
+        let after = distance.partition_point(|&d| d <= way);
+        let piece = after.saturating_sub(1).min(points.len() - 2);
+        let share = (way - distance[piece]) / (distance[piece + 1] - distance[piece]);
+        points[piece] + (points[piece + 1] - points[piece]) * share
+    };
+    layout.arc_length.iter().map(at).collect()
+}
+
 /// Where a line with one loose end leads from the end that is held: in the direction in which a
 /// fixed joint or a hinge holds it, or down (a heavy line), up (a light one under deep enough
 /// water), or along the surface.
@@ -287,6 +327,7 @@ fn loose_direction(
     start: &Vector3,
     length: f64,
     down: &Vector3,
+    surface: f64,
     supports: &Supports,
 ) -> Vector3 {
     if let LineEnd::Connected(connection) = held
@@ -296,7 +337,7 @@ fn loose_direction(
             supports.get(connection.to).rotation * Vector3::from(connection.direction_local);
         return if end == 0 { direction } else { -direction };
     }
-    if start.z + length * down.z > 0.0 {
+    if start.z + length * down.z > surface {
         Vector3::x()
     } else {
         *down
@@ -341,6 +382,46 @@ fn arc(a: &Vector3, b: &Vector3, length: f64, down: &Vector3, share: f64) -> Vec
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn elements_are_laid_evenly_along_a_start_shape() {
+        let line = Line {
+            name: "bent".into(),
+            sections: Vec::new(),
+            attachments: Vec::new(),
+            ends: [LineEnd::Free, LineEnd::Free],
+            start_shape: vec![[1.0, 0.0, 0.0], [1.0, 3.0, 0.0], [1.0, 3.0, -1.0]],
+        };
+        let layout = LineLayout {
+            first_frame: 0,
+            element_count: 0,
+            nodes: Vec::new(),
+            arc_length: vec![0.0, 2.0, 6.0, 7.0, 8.0],
+            element_types: Vec::new(),
+        };
+        // The sections give the line its length of 8 m, twice that of the polyline.
+        let line = Line {
+            sections: vec![catenix_model::Section {
+                line_type: 0,
+                element_lengths: vec![2.0, 4.0, 1.0, 1.0],
+            }],
+            ..line
+        };
+        let points = along_polyline(&line, &layout);
+        let expected = [
+            [1.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [1.0, 3.0, 0.0],
+            [1.0, 3.0, -0.5],
+            [1.0, 3.0, -1.0],
+        ];
+        for (point, expected) in points.iter().zip(expected) {
+            assert!(
+                (point - Vector3::from(expected)).norm() < 1e-14,
+                "{point} not {expected:?}"
+            );
+        }
+    }
 
     #[test]
     fn arcs_have_their_length_and_their_ends() {

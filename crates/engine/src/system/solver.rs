@@ -10,6 +10,7 @@ use super::assembly::{self, EvaluatedPair};
 use super::frames::Sea;
 use crate::body::motion::RigidMotion;
 use crate::element::dem::connector::Prediction;
+use crate::load::variation;
 
 /// A system with the room that solving needs.
 #[derive(Debug, Clone)]
@@ -20,6 +21,8 @@ pub struct SystemSolver<'a> {
     /// Whether vessels have their velocities, or stand still.
     vessels_move: bool,
     pub(super) vessels: Vec<RigidMotion>,
+    /// Factor on each load, as last evaluated.
+    pub(super) load_factors: Vec<f64>,
     pub(super) pairs: Vec<EvaluatedPair>,
     predicted: Vec<Prediction>,
     has_prediction: bool,
@@ -56,6 +59,7 @@ impl<'a> SystemSolver<'a> {
             current_acts,
             vessels_move,
             vessels,
+            load_factors: vec![0.0; system.model.loads.len()],
             pairs,
             predicted: vec![Prediction::default(); system.connectors.len()],
             has_prediction: false,
@@ -103,7 +107,7 @@ impl<'a> SystemSolver<'a> {
                 0.0
             },
             seabed: environment.seabed.as_ref(),
-            depth: environment.water_depth,
+            depth: environment.water.map_or(0.0, |water| water.depth),
         }
     }
 }
@@ -130,11 +134,15 @@ impl ImplicitSystem for SystemSolver<'_> {
                 *motion = motion.stopped();
             }
         }
+        for (factor, load) in self.load_factors.iter_mut().zip(&self.system.model.loads) {
+            *factor = variation::factor(&load.variation, time);
+        }
         let predictions = self.has_prediction.then_some(self.predicted.as_slice());
         assembly::assemble(
             self.system,
             &self.sea(time),
             &self.vessels,
+            &self.load_factors,
             state,
             weights,
             predictions,

@@ -8,7 +8,8 @@ use catenix_numerics::{ImplicitSystem, Matrix3, MotionState, TangentWeights, Vec
 use super::{System, SystemSolver};
 
 /// Every kind of load and connection in one model: surface, seabed, sheared current, lumps,
-/// unlike neighbours, all joints, a loop over two bodies, structural damping, shear flexibility.
+/// unlike neighbours, all joints, sliding ends, a loop over two bodies, structural damping, shear
+/// flexibility, point loads that stay and that follow.
 const MODEL: &str = r#"
 title = "everything"
 [environment]
@@ -78,6 +79,37 @@ end_b = { to = "buoy", joint = "universal", at = ["0 m", "0 m", "-0.5 m"], direc
 [lines.tail]
 sections = [{ type = "soft", length = "2 m", elements = 1 }]
 end_a = { to = "buoy", joint = "fixed", at = ["0.5 m", "0 m", "0 m"], direction = [1, 0, 0] }
+[lines.guyed]
+sections = [{ type = "soft", length = "6 m", elements = 2 }]
+end_a = { to = "ship", joint = "fixed", direction = [0, 1, 0], slides_along = [1, 2, 0.5] }
+end_b = { to = "buoy", joint = "hinge", direction = [0, 1, 0], slides_along = [0.3, 1, -0.4] }
+[lines.strut]
+sections = [{ type = "stiff", length = "5 m", elements = 2 }]
+end_a = { to = "anchor", joint = "universal", direction = [1, 0, 1], slides_along = [0, 1, 0.2] }
+end_b = { to = "buffer", joint = "fixed", at = ["0.1 m", 0, 0], direction = [1, 0, 1], slides_along = [0, 0, 1] }
+[loads.still]
+on = "riser"
+at = "4 m"
+force = ["2 kN", "-1 kN", "3 kN"]
+moment = ["1 kN m", "2 kN m", 0]
+harmonic = { angular_frequency = "2 rad/s", phase = "20 deg", ramp = "1 s" }
+[loads.follower]
+on = "hose"
+at = "16 m"
+force = [0, "4 kN", "1 kN"]
+moment = ["1 kN m", "-2 kN m", "3 kN m"]
+follows = true
+[loads.pull]
+on = "buffer"
+point = ["0.3 m", "0.1 m", "0.7 m"]
+force = ["5 kN", 0, "2 kN"]
+factor = [{ time = 0, factor = 0.5 }, { time = 1, factor = 2 }]
+[loads.push]
+on = "buoy"
+point = [0, "0.4 m", 0]
+force = [0, "5 kN", "2 kN"]
+moment = ["1 kN m", 0, 0]
+follows = true
 [dynamics]
 duration = "1 s"
 "#;

@@ -216,10 +216,14 @@ impl StepView<'_> {
         let system = self.solver.system;
         let result = self.node(line, node);
         let environment = &system.model.environment;
-        let depth = (-result.position.z).max(0.0);
+        // Without water there is no surface from which pressures could be reckoned.
+        let depth = match environment.water {
+            Some(_) => (-result.position.z).max(0.0),
+            None => 0.0,
+        };
         let last = system.lines[line].element_count - 1;
         let line_type = system.element_type(line, node.min(last));
-        let outer = environment.water_density * environment.gravity * depth;
+        let outer = environment.fluid_density() * environment.gravity * depth;
         let inner = line_type.content_density * environment.gravity * depth;
         let area = |diameter: f64| 0.25 * std::f64::consts::PI * diameter * diameter;
         // Source: docs/theory/results.md, eq. (1).

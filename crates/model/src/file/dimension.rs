@@ -82,9 +82,11 @@ dimensions! {
     MassMomentPerLength: "a moment of inertia per length", "kg m", [1, 1, 0, 0], "0.4 kg m";
     Time: "a time", "s", [0, 0, 1, 0], "8 s";
     Angle: "an angle", "rad", [0, 0, 0, 1], "90 deg";
+    AngularFrequency: "an angular frequency", "rad/s", [0, 0, -1, 1], "20 rad/s";
     Speed: "a speed", "m/s", [0, 1, -1, 0], "0.5 m/s";
     Acceleration: "an acceleration", "m/s^2", [0, 1, -2, 0], "9.80665 m/s^2";
     Force: "a force", "N", [1, 1, -2, 0], "35.57 kN";
+    Moment: "a moment", "N m", [1, 2, -2, 0], "80 kN m";
     Pressure: "a pressure", "Pa", [1, -1, -2, 0], "206 GPa";
     FlexuralStiffness: "a bending stiffness", "N m^2", [1, 3, -2, 0], "10 kN m^2";
     RotationalStiffness: "a rotational stiffness", "N m/rad", [1, 2, -2, -1], "50 kN m/deg";

@@ -10,7 +10,7 @@ use std::path::Path;
 use catenix_model::{
     Axis, Body, Channel, ChannelTarget, Current, DynamicsSettings, Environment, Figure,
     IntegratorSettings, Line, LineEnd, LineType, LoadCase, Model, OutputSettings, PipeWall,
-    Reference, Section, StaticsSettings, Statistic, StepControl, Study, Vessel,
+    Reference, Section, StaticsSettings, Statistic, StepControl, Study, Vessel, Water,
 };
 use catenix_results::{
     CaseOutcome, DynamicsFacts, Provenance, ResultStore, Sample, StaticsFacts, Status, Summary,
@@ -131,6 +131,7 @@ fn model() -> Model {
         torsional_stiffness: 1e6,
         shear_stiffness: None,
         polar_inertia: 0.1,
+        rotary_inertia: 0.0,
         structural_damping: 0.0,
         normal_drag: 1.0,
         axial_drag: 0.0,
@@ -160,8 +161,10 @@ fn model() -> Model {
         title: "Synthetic".into(),
         environment: Environment {
             gravity: 9.80665,
-            water_density: 1025.0,
-            water_depth: 1000.0,
+            water: Some(Water {
+                density: 1025.0,
+                depth: 1000.0,
+            }),
             current: Current::default(),
             seabed: None,
         },
@@ -174,6 +177,7 @@ fn model() -> Model {
             }],
             attachments: Vec::new(),
             ends: [LineEnd::Free, LineEnd::Free],
+            start_shape: Vec::new(),
         }],
         bodies: vec![body],
         vessels: vec![Vessel {
@@ -182,7 +186,9 @@ fn model() -> Model {
             heading: 0.0,
             motions: Vec::new(),
         }],
+        loads: Vec::new(),
         statics: StaticsSettings {
+            equilibrium: true,
             current: false,
             tolerance: 1e-9,
             max_iterations: 100,

@@ -41,7 +41,7 @@ pub struct Prediction {
 impl Prediction {
     /// The force that belongs to the prediction, about the axis of the new configuration.
     #[inline]
-    pub(super) fn force(&self, stiffness: &ConnectorStiffness, axis: &Vector3) -> Vector3 {
+    pub fn force(&self, stiffness: &ConnectorStiffness, axis: &Vector3) -> Vector3 {
         let across = self.across - axis * axis.dot(&self.across);
         axis * (stiffness.axial * self.extension) + across * stiffness.shear
     }

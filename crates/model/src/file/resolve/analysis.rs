@@ -26,6 +26,7 @@ const DEFAULT_MAX_ORDER: usize = 2;
 pub(super) fn statics(table: &StaticsTable, log: &mut Log) -> StaticsSettings {
     check_below_one("tolerance", &table.tolerance, log);
     StaticsSettings {
+        equilibrium: table.equilibrium,
         current: table.current,
         tolerance: table.tolerance.si,
         max_iterations: table.max_iterations.value,

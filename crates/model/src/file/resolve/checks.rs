@@ -13,9 +13,15 @@ use super::{Assembly, Slot};
 /// Most connection points between which chains of lines are checked: the check compares every pair.
 const MOST_CHAIN_POINTS: usize = 300;
 
-/// Reports systems that cannot be in equilibrium.
-pub(super) fn check(assembly: &Assembly, log: &mut Log) {
-    check_supports(assembly, log);
+/// Reports systems that cannot be in equilibrium; one that flies freely needs none.
+pub(super) fn check(assembly: &Assembly, equilibrium: bool, log: &mut Log) {
+    if assembly.lines.is_empty() {
+        let help = "write [lines.some_name] with sections and ends";
+        log.error(Code::MissingKey, &(0..0), "the model has no line", help);
+    }
+    if equilibrium {
+        check_supports(assembly, log);
+    }
     check_depths(assembly, log);
     let direct_gaps = check_line_lengths(assembly, log);
     if !direct_gaps {
@@ -30,12 +36,12 @@ fn connected(end: &LineEnd) -> Option<&EndConnection> {
     }
 }
 
+fn slides(connection: &EndConnection) -> bool {
+    connection.slides_along.is_some()
+}
+
 /// Lines that nothing holds, bodies that no line holds, and systems without a fixed point.
 fn check_supports(assembly: &Assembly, log: &mut Log) {
-    if assembly.lines.is_empty() {
-        let help = "write [lines.some_name] with sections and ends";
-        log.error(Code::MissingKey, &(0..0), "the model has no line", help);
-    }
     // What a broken line would have held is unknown.
     let Some(lines) = assembly
         .lines
@@ -69,7 +75,8 @@ fn check_supports(assembly: &Assembly, log: &mut Log) {
                     "both ends of the line `{}` are free: nothing holds it",
                     slot.name
                 );
-                let help = "connect an end: end_a = { to = \"...\", joint = \"ball\" }";
+                let help = "connect an end: end_a = { to = \"...\", joint = \"ball\" }; or let it fly \
+                            from its first shape: statics.equilibrium = false";
                 log.error(Code::Geometry, &slot.name_span, message, help);
             }
             [_] => {}
@@ -109,11 +116,11 @@ fn check_supports(assembly: &Assembly, log: &mut Log) {
 
 /// Vessels and connection points below a seabed that acts.
 fn check_depths(assembly: &Assembly, log: &mut Log) {
-    if assembly.environment.seabed.is_none() {
+    let Some(seabed) = assembly.environment.seabed_height() else {
         return;
-    }
-    let depth = assembly.environment.water_depth;
-    let help = format!("the seabed is at z = {} m", -depth);
+    };
+    let depth = -seabed;
+    let help = format!("the seabed is at z = {seabed} m");
     for slot in &assembly.vessels {
         if let Some(vessel) = &slot.item
             && vessel.position[2] < -depth
@@ -156,7 +163,9 @@ fn check_line_lengths(assembly: &Assembly, log: &mut Log) -> bool {
             continue;
         };
         let gap = match (a.to, b.to) {
-            (SupportRef::Body(first), SupportRef::Body(second)) if first == second => {
+            (SupportRef::Body(first), SupportRef::Body(second))
+                if first == second && !slides(a) && !slides(b) =>
+            {
                 distance(&Point3::from(a.point_local), &Point3::from(b.point_local))
             }
             _ => match (
@@ -202,6 +211,10 @@ fn check_chains(assembly: &Assembly, log: &mut Log) {
     for first in 0..points.len() {
         for second in first + 1..points.len() {
             let (a, b) = (points[first].0, points[second].0);
+            if slides(a) || slides(b) {
+                // Where a point slides, nothing limits the way from one line to the next.
+                continue;
+            }
             if a.to == b.to && matches!(a.to, SupportRef::Body(_)) {
                 let apart = distance(&Point3::from(a.point_local), &Point3::from(b.point_local));
                 links.push((first, second, apart));
@@ -270,8 +283,11 @@ fn resolved_lines(
         .filter_map(|slot| Some((slot, slot.item.as_ref()?)))
 }
 
-/// Position of a connection to a vessel at rest, global [m].
+/// Position of a connection to a vessel at rest, global [m]; none for a point that slides.
 fn known_position(connection: &EndConnection, vessels: &[Slot<Vessel>]) -> Option<Point3<f64>> {
+    if connection.slides_along.is_some() {
+        return None;
+    }
     let SupportRef::Vessel(index) = connection.to else {
         return None;
     };

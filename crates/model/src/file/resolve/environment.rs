@@ -2,15 +2,20 @@
 
 use crate::file::diagnostic::DiagnosticCode as Code;
 use crate::file::log::Log;
-use crate::file::tables::{CurrentPointTable, CurrentTable, EnvironmentTable, SeabedTable};
-use crate::{Current, CurrentPoint, Environment, Seabed};
+use crate::file::tables::{
+    CurrentPointTable, CurrentTable, EnvironmentTable, FactorTable, SeabedTable,
+};
+use crate::{Current, CurrentPoint, Environment, Seabed, Water};
 
 /// Resolves the environment; values that are wrong are NaN and already reported.
 pub(super) fn resolve(table: &EnvironmentTable, log: &mut Log) -> Environment {
+    check_water(table, log);
     Environment {
         gravity: table.gravity.si,
-        water_density: table.water.density.si,
-        water_depth: table.water.depth.si,
+        water: table.water.as_ref().map(|water| Water {
+            density: water.density.si,
+            depth: water.depth.si,
+        }),
         current: current(&table.current, log),
         seabed: table
             .seabed
@@ -18,6 +23,51 @@ pub(super) fn resolve(table: &EnvironmentTable, log: &mut Log) -> Environment {
             .filter(|table| table.contact)
             .map(seabed),
     }
+}
+
+/// What needs water, where there is none.
+fn check_water(table: &EnvironmentTable, log: &mut Log) {
+    if table.water.is_some() {
+        return;
+    }
+    let profile = table.current.profile.as_ref();
+    let current = profile
+        .filter(|points| !points.is_empty())
+        .map(|_| ("a current", &table.current.key_span));
+    let seabed = table
+        .seabed
+        .as_ref()
+        .filter(|seabed| seabed.contact)
+        .map(|seabed| {
+            (
+                "a seabed, which lies at the water's depth,",
+                &seabed.key_span,
+            )
+        });
+    for (what, span) in [current, seabed].into_iter().flatten() {
+        let message = format!("there is {what} but no water");
+        let help = "write environment.water.depth = \"1000 m\", or remove it";
+        log.error(Code::MissingKey, span, message, help);
+    }
+}
+
+/// A factor over time as (time, factor); reports times that decrease.
+pub(super) fn factor_table(entries: &[FactorTable], log: &mut Log) -> Vec<(f64, f64)> {
+    for pair in entries.windows(2) {
+        let (before, after) = (&pair[0].time, &pair[1].time);
+        if after.si < before.si {
+            let message = format!(
+                "times must not decrease, but {} s follows {} s",
+                after.si, before.si
+            );
+            let help = "order the entries by time; two entries at one time are a step";
+            log.error(Code::Value, &after.span, message, help);
+        }
+    }
+    entries
+        .iter()
+        .map(|entry| (entry.time.si, entry.factor.si))
+        .collect()
 }
 
 fn current(table: &CurrentTable, log: &mut Log) -> Current {
@@ -37,18 +87,6 @@ fn current(table: &CurrentTable, log: &mut Log) -> Current {
             );
         }
     }
-    let factors = table.factor.as_deref().unwrap_or_default();
-    for pair in factors.windows(2) {
-        let (before, after) = (&pair[0].time, &pair[1].time);
-        if after.si < before.si {
-            let message = format!(
-                "times must not decrease, but {} s follows {} s",
-                after.si, before.si
-            );
-            let help = "order the entries by time; two entries at one time are a step";
-            log.error(Code::Value, &after.span, message, help);
-        }
-    }
     let point = |point: &CurrentPointTable| {
         let heading = point.heading.as_ref().unwrap_or(&table.heading);
         CurrentPoint {
@@ -58,10 +96,7 @@ fn current(table: &CurrentTable, log: &mut Log) -> Current {
     };
     Current {
         profile: points.iter().map(point).collect(),
-        factor: factors
-            .iter()
-            .map(|entry| (entry.time.si, entry.factor.si))
-            .collect(),
+        factor: factor_table(table.factor.as_deref().unwrap_or_default(), log),
     }
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::file::diagnostic::DiagnosticCode as Code;
-use crate::file::dimension::{Dimensionless, Force, Volume};
+use crate::file::dimension::{Dimensionless, Force, Length, Volume};
 use crate::file::log::Log;
 use crate::file::node::Span;
 use crate::file::quantity::{NonNegative, Real};
@@ -66,6 +66,7 @@ pub(super) fn resolve(
         .filter_map(|item| attachment(item, name, written_length, environment, log))
         .collect();
     attachments.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
+    let start_shape = start_shape(table, log);
     let end_a = end(table.end_a.as_ref(), names, log);
     let end_b = end(table.end_b.as_ref(), names, log);
     if sections.len() != table.sections.len() || sections.is_empty() {
@@ -76,6 +77,7 @@ pub(super) fn resolve(
         sections,
         attachments,
         ends: [end_a?, end_b?],
+        start_shape: start_shape?,
     };
     let point_span = |end: &Option<EndTable>| match end {
         Some(EndTable::Connected(connection)) => connection.at.span.clone(),
@@ -87,6 +89,36 @@ pub(super) fn resolve(
         stretched_length,
         point_spans,
     })
+}
+
+/// Points of the start shape; empty when there is none, `None` when it cannot be used.
+fn start_shape(table: &LineTable, log: &mut Log) -> Option<Vec<[f64; 3]>> {
+    let Some(points) = &table.start_shape else {
+        return Some(Vec::new());
+    };
+    let help = "write start_shape = [ [x, y, z], [x, y, z], ... ] from end A to end B, no two \
+                points that follow each other alike";
+    let [first, .., _] = points.as_slice() else {
+        let message = format!(
+            "`start_shape` needs at least 2 points, but has {}",
+            points.len()
+        );
+        let span = points.first().map_or(&table.key_span, |point| &point.span);
+        log.error(Code::Value, span, message, help);
+        return None;
+    };
+    let place = |point: &Vector<Real<Length>>| [0, 1, 2].map(|i| point.components[i].si);
+    let mut before = place(first);
+    for point in &points[1..] {
+        let after = place(point);
+        if after == before {
+            let message = "two points of `start_shape` that follow each other are alike";
+            log.error(Code::Value, &point.span, message, help);
+            return None;
+        }
+        before = after;
+    }
+    Some(points.iter().map(place).collect())
 }
 
 fn attachment(
@@ -143,6 +175,9 @@ impl Buoyancy<'_> {
         log: &mut Log,
     ) -> Option<f64> {
         let weight = mass * environment.gravity;
+        let Some(water) = environment.water.filter(|_| environment.gravity != 0.0) else {
+            return self.volume_without_buoyancy(name, environment, log);
+        };
         let (force, span) = match (self.volume, self.net_lift, self.wet_weight) {
             (Some(volume), None, None) => return Some(volume.si),
             (None, Some(lift), None) => (weight + lift.si, &lift.span),
@@ -169,7 +204,36 @@ impl Buoyancy<'_> {
             log.error(Code::Value, span, message, help);
             return None;
         }
-        Some(force / (environment.water_density * environment.gravity))
+        Some(force / (water.density * environment.gravity))
+    }
+
+    /// The same where nothing is buoyant: a volume may be given, and is not needed.
+    fn volume_without_buoyancy(
+        &self,
+        name: &str,
+        environment: &Environment,
+        log: &mut Log,
+    ) -> Option<f64> {
+        let why = if environment.water.is_none() {
+            "there is no water"
+        } else {
+            "there is no gravity"
+        };
+        let forces = [
+            self.net_lift.map(|q| ("net_lift", &q.span)),
+            self.wet_weight.map(|q| ("wet_weight", &q.span)),
+        ];
+        for (key, span) in forces.into_iter().flatten() {
+            let message = format!("`{name}` has a `{key}`, but {why}");
+            log.error(
+                Code::ConflictingKeys,
+                span,
+                message,
+                "write volume = \"... m^3\", or nothing",
+            );
+            return None;
+        }
+        Some(self.volume.map_or(0.0, |volume| volume.si))
     }
 }
 
@@ -184,6 +248,10 @@ fn connection(table: &ConnectionTable, names: &Names, log: &mut Log) -> Option<E
     let to = names.find_support(&table.to, log);
     let direction = unit_vector("direction", &table.direction, log);
     check_joint_keys(table, log);
+    let slides_along = match &table.slides_along {
+        None => Some(None),
+        Some(axis) => unit_vector("slides_along", axis, log).map(|unit| Some(unit.into())),
+    };
     let direction = direction?;
     let axis = match &table.axis {
         None => Some(default_axis(direction)),
@@ -217,6 +285,7 @@ fn connection(table: &ConnectionTable, names: &Names, log: &mut Log) -> Option<E
         point_local: [0, 1, 2].map(|i| table.at.components[i].si),
         direction_local: direction.into(),
         joint,
+        slides_along: slides_along?,
     })
 }
 

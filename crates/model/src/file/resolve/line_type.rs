@@ -44,6 +44,8 @@ fn pipe(table: &PipeTable, name: &str, log: &mut Log) -> Option<ResolvedLineType
     let (coating, content) = (table.coating_mass.si, table.content_density.si);
     let youngs = table.youngs_modulus.si;
     let shear_modulus = youngs / (2.0 * (1.0 + poisson));
+    // The coating sits at the outer radius; the content does not turn with the pipe.
+    let polar_inertia = table.density.si * polar_moment + coating * outer.powi(2) / 4.0;
     let line_type = LineType {
         name: name.to_owned(),
         outer_diameter: outer,
@@ -56,8 +58,11 @@ fn pipe(table: &PipeTable, name: &str, log: &mut Log) -> Option<ResolvedLineType
             .shear_coefficient
             .as_ref()
             .map(|coefficient| coefficient.si * shear_modulus * wall_area),
-        // The coating sits at the outer radius; the content does not turn with the pipe.
-        polar_inertia: table.density.si * polar_moment + coating * outer.powi(2) / 4.0,
+        polar_inertia,
+        rotary_inertia: match &table.shear_coefficient {
+            Some(_) => 0.5 * polar_inertia,
+            None => 0.0,
+        },
         structural_damping: table.structural_damping.si,
         normal_drag: table.normal_drag.si,
         axial_drag: table.axial_drag.si,
@@ -89,6 +94,10 @@ fn general(table: &GeneralTable, name: &str, log: &mut Log) -> Option<ResolvedLi
         log.error(Code::Value, &table.content_density.span, message, help);
     }
     let optional = |value: Option<f64>, default: f64| value.unwrap_or(default);
+    let polar_inertia = optional(
+        table.polar_inertia.as_ref().map(|inertia| inertia.si),
+        mass * (outer.powi(2) + inner.powi(2)) / 8.0,
+    );
     let line_type = LineType {
         name: name.to_owned(),
         outer_diameter: outer,
@@ -98,9 +107,13 @@ fn general(table: &GeneralTable, name: &str, log: &mut Log) -> Option<ResolvedLi
         bending_stiffness: bending,
         torsional_stiffness: optional(table.torsional_stiffness.as_ref().map(|q| q.si), bending),
         shear_stiffness: table.shear_stiffness.as_ref().map(|stiffness| stiffness.si),
-        polar_inertia: optional(
-            table.polar_inertia.as_ref().map(|inertia| inertia.si),
-            mass * (outer.powi(2) + inner.powi(2)) / 8.0,
+        polar_inertia,
+        rotary_inertia: optional(
+            table.rotary_inertia.as_ref().map(|inertia| inertia.si),
+            match &table.shear_stiffness {
+                Some(_) => 0.5 * polar_inertia,
+                None => 0.0,
+            },
         ),
         structural_damping: table.structural_damping.si,
         normal_drag: table.normal_drag.si,

@@ -13,6 +13,7 @@ mod grading;
 mod history;
 mod line;
 mod line_type;
+mod load;
 mod motion;
 mod names;
 mod references;
@@ -113,7 +114,11 @@ pub(super) fn resolve_case(
         bodies,
         lines,
     };
-    checks::check(&assembly, log);
+    let resolve_load = |item: &_, name: &str, log: &mut Log| {
+        load::resolve(item, name, &names, &assembly.lines, log)
+    };
+    let loads = slots(&table.loads, resolve_load, log);
+    checks::check(&assembly, table.statics.equilibrium, log);
 
     let statics = analysis::statics(&table.statics, log);
     let dynamics = table
@@ -154,6 +159,7 @@ pub(super) fn resolve_case(
             .collect(),
         bodies: filled(assembly.bodies)?,
         vessels: filled(assembly.vessels)?,
+        loads: filled(loads)?,
         statics,
         dynamics,
         output,

@@ -19,6 +19,15 @@ pub(super) struct Lookup {
     indices: HashMap<String, usize>,
 }
 
+/// A line or a body, by index.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum LoadTarget {
+    /// Index of a line.
+    Line(usize),
+    /// Index of a body.
+    Body(usize),
+}
+
 /// All names of a load case.
 #[derive(Debug)]
 pub(super) struct Names {
@@ -117,6 +126,30 @@ impl Names {
             bodies: Lookup::new("body").add(&table.bodies),
             lines: Lookup::new("line").add(&table.lines),
         }
+    }
+
+    /// The line or body of a name; notes an error when there is none.
+    pub fn find_load_place(&self, reference: &Text, log: &mut Log) -> Option<LoadTarget> {
+        let name = &reference.value;
+        if let Some(index) = self.lines.get(name) {
+            return Some(LoadTarget::Line(index));
+        }
+        if let Some(index) = self.bodies.get(name) {
+            return Some(LoadTarget::Body(index));
+        }
+        let (message, help) = if self.vessels.get(name).is_some() {
+            let message = format!("`{name}` moves as it is told, or not at all: no load moves it");
+            (message, "put the load on a line or body".to_owned())
+        } else {
+            let known = self.lines.iter().chain(self.bodies.iter());
+            let what = "line or body";
+            (
+                format!("there is no {what} `{name}`"),
+                suggest(name, what, known),
+            )
+        };
+        log.error(Code::UnknownName, &reference.span, message, help);
+        None
     }
 
     /// The vessel, anchor or body of a name; notes an error when there is none.

@@ -8,6 +8,9 @@ use crate::file::read::Count;
 table! {
     /// How static equilibrium is sought.
     pub(super) struct StaticsTable {
+        /// Whether an equilibrium is sought. With `false` the motion starts at rest from the first
+        /// shape of the lines: a body that flies freely has no equilibrium.
+        equilibrium: bool = true,
         /// Whether the current acts in the static equilibrium. With `false` it acts from t = 0 on.
         current: bool = true,
         /// Largest residual force at any element, as a fraction of the system's reference force.

@@ -9,12 +9,13 @@ use crate::file::node::NodeValue;
 use crate::file::quantity::{NonNegative, Positive, Real};
 
 table! {
-    /// The sea around the system.
+    /// The sea around the system, or air, or nothing.
     pub(super) struct EnvironmentTable {
-        /// Acceleration of gravity.
-        gravity: Positive<Acceleration> = "9.80665 m/s^2",
-        /// The water.
-        water: WaterTable,
+        /// Acceleration of gravity; 0 for a system in space.
+        gravity: NonNegative<Acceleration> = "9.80665 m/s^2",
+        /// The water; without this table there is none: no buoyancy, no drag, no added mass, no
+        /// pressure, and no surface.
+        water: Option<WaterTable>,
         /// The current; without it the water is still.
         current: CurrentTable = NodeValue::empty_table(),
         /// Contact with a flat seabed at the water's depth; without this table lines may pass
@@ -44,7 +45,7 @@ table! {
         profile: Option<Vec<CurrentPointTable>>,
         /// Factor on the whole profile over time; linear between entries, constant outside. Two
         /// entries at one time are a step.
-        factor: Option<Vec<CurrentFactorTable>>,
+        factor: Option<Vec<FactorTable>>,
     }
 }
 
@@ -61,11 +62,11 @@ table! {
 }
 
 table! {
-    /// The factor on the current at one time.
-    pub(super) struct CurrentFactorTable {
+    /// The factor on a current or a load at one time.
+    pub(super) struct FactorTable {
         /// Time.
         time: NonNegative<Time>,
-        /// Factor on the profile.
+        /// Factor on the profile or the load.
         factor: Real<Dimensionless>,
     }
 }

@@ -21,6 +21,10 @@ table! {
         end_a: Option<EndTable>,
         /// What holds end B; absent: nothing.
         end_b: Option<EndTable>,
+        /// Points of a polyline in global axes, end A first, along which the elements are first
+        /// laid; the line's length is spread evenly over it. Statics starts from there. Absent: an
+        /// arc between the ends.
+        start_shape: Option<Vec<Vector<Real<Length>>>>,
     }
 }
 
@@ -86,6 +90,9 @@ table! {
         /// connected to; in local axes, across the direction. Absent: local y made normal to the
         /// direction (or local x, where the direction is close to y).
         axis: Option<Vector<Real<Dimensionless>>>,
+        /// Direction along which the joint's point slides without resistance, in the local axes of
+        /// what the end is connected to: a roller, slip joint or guide. Absent: it does not slide.
+        slides_along: Option<Vector<Real<Dimensionless>>>,
     }
 }
 

@@ -74,6 +74,9 @@ table! {
         content_density: NonNegative<Density> = "0 kg/m^3",
         /// Second moment of mass about the line's axis; absent: mass (OD^2 + ID^2) / 8.
         polar_inertia: Option<Positive<MassMomentPerLength>>,
+        /// Second moment of mass of the section about the axes across the line; absent: half the
+        /// polar one where there is a `shear_stiffness` (Timoshenko), or else none (Euler-Bernoulli).
+        rotary_inertia: Option<NonNegative<MassMomentPerLength>>,
         /// Stiffness-proportional structural damping: damping is this time times stiffness.
         structural_damping: NonNegative<Time> = "0 s",
         /// Normal drag coefficient, on the outer diameter.

@@ -5,17 +5,21 @@ mod body;
 mod environment;
 mod line;
 mod line_type;
+mod load;
 mod motion;
 mod output;
 mod study;
 
 pub(super) use analysis::{DynamicsTable, IntegratorChoice, StaticsTable};
 pub(super) use body::{AnchorTable, BodyTable, VesselTable};
-pub(super) use environment::{CurrentPointTable, CurrentTable, EnvironmentTable, SeabedTable};
+pub(super) use environment::{
+    CurrentPointTable, CurrentTable, EnvironmentTable, FactorTable, SeabedTable,
+};
 pub(super) use line::{
     AttachmentTable, ConnectionTable, EndTable, JointChoice, LineTable, SectionTable,
 };
 pub(super) use line_type::{GeneralTable, LineTypeTable, PipeTable};
+pub(super) use load::{LoadHarmonicTable, LoadTable};
 pub(super) use motion::{DegreeChoice, HarmonicTable, LegTable, MotionTable, TowTable};
 pub(super) use output::{FigureTable, OutputTable, ReferenceTable, StatisticChoice};
 pub(super) use study::{CaseTable, ModelTable, StudyTable};

@@ -6,7 +6,7 @@ use crate::file::read::{Named, Text};
 
 use super::{
     AnchorTable, BodyTable, DynamicsTable, EnvironmentTable, FigureTable, LineTable, LineTypeTable,
-    MotionTable, OutputTable, ReferenceTable, StaticsTable, VesselTable,
+    LoadTable, MotionTable, OutputTable, ReferenceTable, StaticsTable, VesselTable,
 };
 
 table! {
@@ -51,6 +51,8 @@ table! {
         bodies: Named<BodyTable>,
         /// Pipes, hoses, cables and moorings.
         lines: Named<LineTable>,
+        /// Forces and moments on lines and bodies.
+        loads: Named<LoadTable>,
         /// How static equilibrium is sought.
         statics: StaticsTable = NodeValue::empty_table(),
         /// How the motion is integrated; without this table only statics can be computed.

@@ -1,0 +1,111 @@
+//! Point loads on the frames of a system.
+
+use catenix_model::{LoadPlace, PointLoad};
+use catenix_numerics::{BlockMatrix, Configuration, Matrix3, MotionState, Vector3, Vector6};
+
+use super::build::shares_at;
+use super::{LineLayout, System};
+use crate::element::dem::pair::six;
+use crate::load::point::FramePoint;
+
+/// A load, or its share, on one frame.
+#[derive(Debug, Clone)]
+pub(crate) struct FrameLoad {
+    pub frame: usize,
+    /// Index into the model's loads.
+    pub load: usize,
+    pub point: FramePoint,
+}
+
+/// Puts the loads of a model on its frames, in their first shape.
+pub(super) fn place(
+    loads: &[PointLoad],
+    layouts: &[LineLayout],
+    shape: &Configuration,
+    first_body: usize,
+) -> Vec<FrameLoad> {
+    let mut placed = Vec::new();
+    for (index, load) in loads.iter().enumerate() {
+        let (force, moment) = (Vector3::from(load.force), Vector3::from(load.moment));
+        let mut add = |frame: usize, arm: Vector3, to_frame: Matrix3, share: f64| {
+            let turn = if load.follows {
+                to_frame
+            } else {
+                Matrix3::identity()
+            };
+            placed.push(FrameLoad {
+                frame,
+                load: index,
+                point: FramePoint {
+                    arm,
+                    force: turn * force * share,
+                    moment: turn * moment * share,
+                    follows: load.follows,
+                },
+            });
+        };
+        match load.place {
+            LoadPlace::Line { line, arc_length } => {
+                let layout = &layouts[line];
+                for (element, offset, share) in shares_at(layout, arc_length) {
+                    let frame = layout.first_frame + element;
+                    let rotation = &shape.rotation[frame];
+                    let to_frame = rotation.transpose() * local_axes(&rotation.column(0).into());
+                    add(frame, Vector3::x() * offset, to_frame, share);
+                }
+            }
+            LoadPlace::Body { body, point_local } => {
+                let arm = Vector3::from(point_local);
+                add(first_body + body, arm, Matrix3::identity(), 1.0);
+            }
+        }
+    }
+    placed
+}
+
+/// Axes of a follower on a line: x along it, y horizontal (global y where the line is vertical),
+/// z = x x y.
+fn local_axes(tangent: &Vector3) -> Matrix3 {
+    let across = Vector3::z().cross(tangent);
+    let y = if across.norm() > 1e-6 {
+        across.normalize()
+    } else {
+        Vector3::y()
+    };
+    Matrix3::from_columns(&[*tangent, y, tangent.cross(&y)])
+}
+
+/// Adds the loads, each times its factor, to the residual and, with `matrix`, their derivatives.
+pub(super) fn add_loads(
+    system: &System,
+    factors: &[f64],
+    state: &MotionState,
+    residual: &mut [Vector6],
+    mut matrix: Option<&mut BlockMatrix>,
+) {
+    for load in &system.loads {
+        let factor = factors[load.load];
+        if factor == 0.0 {
+            continue;
+        }
+        let rotation = &state.configuration.rotation[load.frame];
+        let value = load.point.at(rotation);
+        residual[load.frame] -= six(&value.force, &value.moment) * factor;
+        if let Some(matrix) = matrix.as_deref_mut() {
+            let tangent = load.point.tangent(rotation);
+            let block = &mut matrix.diagonal[load.frame];
+            block.add_quadrant(0, 1, &(tangent.force * -factor));
+            block.add_quadrant(1, 1, &(tangent.moment * -factor));
+        }
+    }
+}
+
+/// Power of the loads [W].
+pub(super) fn power(system: &System, factors: &[f64], state: &MotionState) -> f64 {
+    let powers = system.loads.iter().map(|load| {
+        let value = load.point.at(&state.configuration.rotation[load.frame]);
+        let velocity = &state.velocity[load.frame];
+        six(&value.force, &value.moment).dot(velocity) * factors[load.load]
+    });
+    powers.sum()
+}
