@@ -14,5 +14,6 @@ pub mod system;
 
 pub use analysis::dynamics::{DynamicsError, DynamicsReport, SolverStatistics, simulate};
 pub use analysis::energy::EnergyAccount;
+pub use analysis::path::{PathEnd, PathError, PathEvent, PathPoint, PathReport, follow_path};
 pub use analysis::statics::{StaticSolution, StaticsError, StaticsProgress, solve_statics};
 pub use system::{StepView, System, SystemError};

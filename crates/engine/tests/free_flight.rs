@@ -1,5 +1,8 @@
 //! Bodies that nothing holds, and bodies that are spun up: momentum, energy, and published motions.
 
+// A panic is how a test fails, in its helpers too.
+#![allow(clippy::unwrap_used)]
+
 mod common;
 
 use std::f64::consts::PI;

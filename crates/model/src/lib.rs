@@ -13,6 +13,7 @@ mod line;
 mod load;
 mod motion;
 mod output;
+mod path;
 
 pub use analysis::{DynamicsSettings, IntegratorSettings, StaticsSettings, StepControl};
 pub use body::{Body, Vessel};
@@ -26,6 +27,7 @@ pub use output::{
     Axis, Channel, ChannelTarget, Figure, LineQuantity, OutputSettings, Reference, Statistic,
     all_channels,
 };
+pub use path::{PathSettings, PathStop};
 
 /// One system in one environment with its motions: a load case, ready to be assembled.
 ///
@@ -50,6 +52,8 @@ pub struct Model {
     pub statics: StaticsSettings,
     /// How the motion is integrated; `None` when the file describes statics only.
     pub dynamics: Option<DynamicsSettings>,
+    /// Which equilibrium path is followed; `None` when the file asks for none.
+    pub path: Option<PathSettings>,
     /// What is recorded.
     pub output: OutputSettings,
 }

@@ -42,6 +42,11 @@ point = [0, "1 m", 0]
 moment = [0, 0, "80 N m"]
 follows = true
 harmonic = { period = "4 s", phase = "90 deg" }
+[path]
+loads = ["push"]
+range = [0, 9]
+at = [5, 1]
+stop = { channel = "tip.z", range = ["-2 m", "1 m"] }
 "#;
 
 fn read(text: &str) -> Result<Study, ModelFileErrors> {
@@ -96,6 +101,24 @@ fn a_system_in_space_is_read() {
             ramp: 0.0
         }
     );
+}
+
+#[test]
+fn a_path_is_read() {
+    let model = read(GOOD).unwrap().cases.remove(0).model;
+    let path = model.path.unwrap();
+    assert_eq!(path.loads, [0]);
+    assert_eq!((path.start, path.range), (0.0, [0.0, 9.0]));
+    assert_eq!(path.at, [1.0, 5.0]);
+    assert_eq!(path.max_points, 200);
+    let stop = path.stop.unwrap();
+    assert_eq!(
+        (stop.channel.name.as_str(), stop.range),
+        ("tip.z", [-2.0, 1.0])
+    );
+    let all = GOOD.replace("loads = [\"push\"]\n", "");
+    let model = read(&all).unwrap().cases.remove(0).model;
+    assert_eq!(model.path.unwrap().loads, [0, 1]);
 }
 
 #[test]
@@ -207,6 +230,20 @@ fn each_kind_of_bad_input() {
             "environment.gravity = 0",
             "environment = { gravity = 0, water.depth = 9 }\ncases.a.bodies.tip.wet_weight = 3",
         ),
+        (
+            "a path without its load",
+            "loads = [\"push\"]",
+            "loads = [\"pull\"]",
+        ),
+        ("a path without loads", "loads = [\"push\"]", "loads = []"),
+        ("a path without range", "range = [0, 9]\n", ""),
+        ("a range upside down", "range = [0, 9]", "range = [9, 0]"),
+        ("a start outside", "range = [0, 9]", "range = [1, 9]"),
+        ("a factor outside", "at = [5, 1]", "at = [5, 10]"),
+        ("a first step too long", "at = [5, 1]", "first_step = 0.2"),
+        ("a stop in newtons", "\"-2 m\"", "\"-2 N\""),
+        ("a stop upside down", "\"-2 m\"", "\"2 m\""),
+        ("a stop by nothing", "\"tip.z\"", "\"tip.w\""),
         (
             "negative gravity",
             "environment.gravity = 0",

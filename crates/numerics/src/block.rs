@@ -142,6 +142,33 @@ impl BlockLu {
         })
     }
 
+    /// The block that was factorised, put together again from its factors.
+    pub(crate) fn product(&self) -> Block6 {
+        let a = &self.factors.0;
+        let mut block = Block6::ZERO;
+        for column in 0..6 {
+            for row in 0..6 {
+                // L has ones on its diagonal.
+                let mut entry = if row <= column {
+                    a[row + 6 * column]
+                } else {
+                    0.0
+                };
+                for k in 0..row.min(column + 1) {
+                    entry += a[row + 6 * k] * a[k + 6 * column];
+                }
+                block.0[row + 6 * column] = entry;
+            }
+        }
+        for k in (0..6).rev() {
+            let pivot = self.pivots[k] as usize;
+            for column in 0..6 {
+                block.0.swap(k + 6 * column, pivot + 6 * column);
+            }
+        }
+        block
+    }
+
     #[inline]
     fn solve_column(&self, x: &mut [f64; 6]) {
         for k in 0..6 {
@@ -204,6 +231,10 @@ mod tests {
             let lu = BlockLu::factorise(&block).unwrap();
             lu.solve(&mut rhs);
             prop_assert!((rhs + x).norm() < 1e-11);
+            let product = lu.product();
+            for (entry, want) in product.0.iter().zip(&block.0) {
+                prop_assert!((entry - want).abs() < 1e-13);
+            }
         }
     }
 

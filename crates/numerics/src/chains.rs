@@ -247,6 +247,15 @@ impl Factorisation {
         Ok(())
     }
 
+    /// Number of negative eigenvalues of the symmetric matrix that was factorised last: a
+    /// congruence takes it to its pivot blocks, so theirs are counted.
+    ///
+    /// Source: docs/theory/path.md, eq. (9).
+    pub fn negative_eigenvalues(&self) -> usize {
+        let pivots = self.lu.iter().chain(self.junctions.pivots());
+        pivots.map(negative_eigenvalues_of).sum()
+    }
+
     /// x <- A^-1 x with the last factors.
     pub fn solve(&mut self, topology: &Topology, x: &mut [Vector6]) {
         let base = topology.chain_frames;
@@ -284,6 +293,21 @@ impl Factorisation {
             }
         }
     }
+}
+
+/// Negative eigenvalues of one symmetric pivot block.
+fn negative_eigenvalues_of(lu: &BlockLu) -> usize {
+    let block = lu.product();
+    // Rows scaled alike: forces and moments have different units, and signs do not mind.
+    let scale: [f64; 6] = std::array::from_fn(|row| {
+        let largest = (0..6).map(|column| block.at(row, column).abs());
+        1.0 / largest.fold(f64::MIN_POSITIVE, f64::max).sqrt()
+    });
+    let scaled = nalgebra::Matrix6::from_fn(|row, column| {
+        0.5 * (block.at(row, column) + block.at(column, row)) * scale[row] * scale[column]
+    });
+    let eigenvalues = scaled.symmetric_eigenvalues();
+    eigenvalues.iter().filter(|&&value| value < 0.0).count()
 }
 
 /// Elimination order of a chain: from the end without a junction, if there is one, since a

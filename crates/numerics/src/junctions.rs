@@ -97,6 +97,11 @@ impl JunctionFactors {
         self.pairs.fill([Block6::ZERO; 2]);
     }
 
+    /// Factors of the pivot blocks, one per junction.
+    pub(crate) fn pivots(&self) -> &[BlockLu] {
+        &self.lu
+    }
+
     pub(crate) fn diagonal_mut(&mut self, junction: usize) -> &mut Block6 {
         &mut self.diagonal[junction]
     }

@@ -23,7 +23,7 @@ const STEP_ITERATIONS: usize = 12;
 /// Shortened iterations of one pseudo-step before it is cut: the step is too large.
 const SHORTENED_ITERATIONS: usize = 3;
 /// Largest rotation of a frame in one iteration [rad].
-const ROTATION_LIMIT: f64 = 0.4;
+pub(super) const ROTATION_LIMIT: f64 = 0.4;
 /// Residual at which an intermediate pseudo-step is good enough, over the reference force.
 const STEP_TOLERANCE: f64 = 1e-5;
 /// Growth, per converged step, of the largest step that is tried after a failure.
@@ -31,10 +31,10 @@ const LIMIT_GROWTH: f64 = 1.25;
 /// Most Newton steps after the residual is allowed.
 const SHARPENING_STEPS: usize = 5;
 /// Pseudo-step beyond which the inertia term no longer matters [s].
-const LARGEST_STEP: f64 = 1e4;
+pub(super) const LARGEST_STEP: f64 = 1e4;
 /// Squared frequency of the touch of stiffness that keeps free spins out of the matrix
 /// [rad2/s2]; it acts on the search only, never on the residual.
-const SPIN_HOLD: f64 = 1e-3;
+pub(super) const SPIN_HOLD: f64 = 1e-3;
 /// The same in proportion to the largest residual moment [1/rad]: a spin that nothing holds must
 /// not answer to moments that are there only until the iteration has converged.
 const SPIN_MOMENT: f64 = 1.0;
@@ -55,8 +55,8 @@ pub struct StaticsProgress {
 /// A static equilibrium.
 #[derive(Debug, Clone)]
 pub struct StaticSolution<'a> {
-    solver: SystemSolver<'a>,
-    state: MotionState,
+    pub(super) solver: SystemSolver<'a>,
+    pub(super) state: MotionState,
     /// Newton iterations that it took.
     pub iterations: usize,
     /// Largest residual force [N]; of the first shape, where no equilibrium was sought.
@@ -137,17 +137,28 @@ pub fn solve_statics<'a>(
 ) -> Result<StaticSolution<'a>, StaticsError> {
     let settings = &system.model().statics;
     let solver = SystemSolver::at_rest(system, settings.current);
-    let mut search = Search::new(solver, system.first_shape().clone(), progress);
-    if !settings.equilibrium {
-        search.static_residual();
-        return Ok(StaticSolution {
-            solver: search.solver,
-            state: search.state,
-            iterations: 0,
-            residual_n: search.residual.newtons,
-            warnings: Vec::new(),
-        });
+    if settings.equilibrium {
+        return find_equilibrium(solver, progress);
     }
+    let mut search = Search::new(solver, system.first_shape().clone(), progress);
+    search.static_residual();
+    Ok(StaticSolution {
+        solver: search.solver,
+        state: search.state,
+        iterations: 0,
+        residual_n: search.residual.newtons,
+        warnings: Vec::new(),
+    })
+}
+
+/// Finds the equilibrium of what `solver` sees, from the first shape.
+pub(super) fn find_equilibrium<'a>(
+    solver: SystemSolver<'a>,
+    progress: &mut dyn FnMut(&StaticsProgress) -> ControlFlow<()>,
+) -> Result<StaticSolution<'a>, StaticsError> {
+    let system = solver.system();
+    let settings = &system.model().statics;
+    let mut search = Search::new(solver, system.first_shape().clone(), progress);
     let allowed = system.allowed_residual(settings.tolerance);
     search.run(allowed, settings.max_iterations)?;
     let Search {
@@ -403,25 +414,33 @@ impl<'s, 'a> Search<'s, 'a> {
         }
         self.solver.moving(&self.increment);
         for k in 0..self.travel.len() {
-            let d = &self.increment[k];
-            let turn: Vector3 = d.fixed_rows::<3>(3).into();
-            let position = &mut self.state.configuration.position[k];
-            *position += d.fixed_rows::<3>(0);
-            let rotation = &mut self.state.configuration.rotation[k];
-            // The spin first and the swing after it, so that a large spin leaves the axis alone.
-            let axis = *rotation * self.solver.system().frame_axis(k);
-            let spin = axis * axis.dot(&turn);
-            *rotation = so3::exp(&(turn - spin)) * so3::exp(&spin) * *rotation;
-            let way = so3::log(&(*rotation * self.start.rotation[k].transpose()));
-            let distance = *position - self.start.position[k];
-            self.travel[k] = six(&distance, &way);
+            move_frame(self.solver.system(), k, &self.increment[k], &mut self.state);
+            self.travel[k] = travelled(k, &self.start, &self.state);
         }
         (moved, shorten == 1.0)
     }
 }
 
+/// Moves a frame: its spin first and the swing after it, so that a large spin leaves the axis where
+/// the linear solution put it.
+pub(super) fn move_frame(system: &System, k: usize, d: &Vector6, state: &mut MotionState) {
+    let turn: Vector3 = d.fixed_rows::<3>(3).into();
+    state.configuration.position[k] += d.fixed_rows::<3>(0);
+    let rotation = &mut state.configuration.rotation[k];
+    let axis = *rotation * system.frame_axis(k);
+    let spin = axis * axis.dot(&turn);
+    *rotation = so3::exp(&(turn - spin)) * so3::exp(&spin) * *rotation;
+}
+
+/// Translation and rotation vector of a frame from `start`.
+pub(super) fn travelled(k: usize, start: &Configuration, state: &MotionState) -> Vector6 {
+    let configuration = &state.configuration;
+    let way = so3::log(&(configuration.rotation[k] * start.rotation[k].transpose()));
+    six(&(configuration.position[k] - start.position[k]), &way)
+}
+
 /// Largest norm of the translations (`part` 0) or rotations (`part` 3).
-fn largest_norm(vectors: &[Vector6], part: usize) -> f64 {
+pub(super) fn largest_norm(vectors: &[Vector6], part: usize) -> f64 {
     vectors
         .iter()
         .map(|d| d.fixed_rows::<3>(part).norm())

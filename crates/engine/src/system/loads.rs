@@ -100,6 +100,23 @@ pub(super) fn add_loads(
     }
 }
 
+/// Adds the full values of some loads.
+pub(super) fn add_direction(
+    system: &System,
+    chosen: &[usize],
+    state: &MotionState,
+    out: &mut [Vector6],
+) {
+    for load in system
+        .loads
+        .iter()
+        .filter(|load| chosen.contains(&load.load))
+    {
+        let value = load.point.at(&state.configuration.rotation[load.frame]);
+        out[load.frame] += six(&value.force, &value.moment);
+    }
+}
+
 /// Power of the loads [W].
 pub(super) fn power(system: &System, factors: &[f64], state: &MotionState) -> f64 {
     let powers = system.loads.iter().map(|load| {

@@ -31,6 +31,7 @@ use crate::load::variation;
 
 pub use balance::Momentum;
 pub use energy::EnergyTerms;
+pub(crate) use solver::LoadControl;
 pub use solver::SystemSolver;
 pub use view::StepView;
 

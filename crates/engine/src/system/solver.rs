@@ -8,9 +8,19 @@ use catenix_numerics::{
 use super::System;
 use super::assembly::{self, EvaluatedPair};
 use super::frames::Sea;
+use super::loads;
 use crate::body::motion::RigidMotion;
 use crate::element::dem::connector::Prediction;
 use crate::load::variation;
+
+/// Loads that one factor scales, whatever their variation over time.
+#[derive(Debug, Clone)]
+pub(crate) struct LoadControl {
+    /// Indices into the model's loads.
+    pub loads: Vec<usize>,
+    /// Factor on all of them.
+    pub factor: f64,
+}
 
 /// A system with the room that solving needs.
 #[derive(Debug, Clone)]
@@ -21,6 +31,8 @@ pub struct SystemSolver<'a> {
     /// Whether vessels have their velocities, or stand still.
     vessels_move: bool,
     pub(super) vessels: Vec<RigidMotion>,
+    /// Loads under the control of a factor instead of time.
+    load_control: Option<LoadControl>,
     /// Factor on each load, as last evaluated.
     pub(super) load_factors: Vec<f64>,
     pub(super) pairs: Vec<EvaluatedPair>,
@@ -59,6 +71,7 @@ impl<'a> SystemSolver<'a> {
             current_acts,
             vessels_move,
             vessels,
+            load_control: None,
             load_factors: vec![0.0; system.model.loads.len()],
             pairs,
             predicted: vec![Prediction::default(); system.connectors.len()],
@@ -72,6 +85,36 @@ impl<'a> SystemSolver<'a> {
     /// The system.
     pub fn system(&self) -> &'a System {
         self.system
+    }
+
+    /// Puts loads under the control of a factor.
+    pub(crate) fn control_loads(&mut self, control: LoadControl) {
+        self.load_control = Some(control);
+    }
+
+    /// Sets the factor on the controlled loads.
+    pub(crate) fn set_load_factor(&mut self, factor: f64) {
+        if let Some(control) = &mut self.load_control {
+            control.factor = factor;
+        }
+    }
+
+    /// Force and moment on each frame per unit of the factor on the controlled loads, (n) [N, N m].
+    pub(crate) fn load_direction(&self, state: &MotionState, out: &mut [Vector6]) {
+        out.fill(Vector6::zeros());
+        if let Some(control) = &self.load_control {
+            loads::add_direction(self.system, &control.loads, state, out);
+        }
+    }
+
+    /// x <- S^-1 x with the factors of the last solution.
+    pub(crate) fn solve_again(&mut self, x: &mut [Vector6]) {
+        self.factors.solve(&self.system.topology, x);
+    }
+
+    /// Number of negative eigenvalues of the last factorised matrix, if it is symmetric.
+    pub(crate) fn negative_eigenvalues(&self) -> usize {
+        self.factors.negative_eigenvalues()
     }
 
     /// Factorisations done so far.
@@ -136,6 +179,11 @@ impl ImplicitSystem for SystemSolver<'_> {
         }
         for (factor, load) in self.load_factors.iter_mut().zip(&self.system.model.loads) {
             *factor = variation::factor(&load.variation, time);
+        }
+        if let Some(control) = &self.load_control {
+            for &load in &control.loads {
+                self.load_factors[load] = control.factor;
+            }
         }
         let predictions = self.has_prediction.then_some(self.predicted.as_slice());
         assembly::assemble(

@@ -203,6 +203,7 @@ fn model() -> Model {
             max_iterations: 20,
             statistics_window: WINDOW_S,
         }),
+        path: None,
         output: OutputSettings {
             interval: STEP_S,
             field_interval: FIELD_INTERVAL_S,

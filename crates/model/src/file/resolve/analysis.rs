@@ -138,7 +138,8 @@ fn step_control(table: &DynamicsTable, log: &mut Log) -> StepControl {
     StepControl::Adaptive { accuracy, min, max }
 }
 
-fn check_below_one<S>(key: &str, value: &Quantity<Dimensionless, S>, log: &mut Log) {
+/// Reports a fraction that is none.
+pub(super) fn check_below_one<S>(key: &str, value: &Quantity<Dimensionless, S>, log: &mut Log) {
     if value.si >= 1.0 {
         let message = format!("`{key}` must be well below 1, but is {}", value.si);
         log.error(

@@ -223,7 +223,7 @@ impl Buoyancy<'_> {
             self.net_lift.map(|q| ("net_lift", &q.span)),
             self.wet_weight.map(|q| ("wet_weight", &q.span)),
         ];
-        for (key, span) in forces.into_iter().flatten() {
+        if let Some((key, span)) = forces.into_iter().flatten().next() {
             let message = format!("`{name}` has a `{key}`, but {why}");
             log.error(
                 Code::ConflictingKeys,

@@ -16,6 +16,7 @@ mod line_type;
 mod load;
 mod motion;
 mod names;
+mod path;
 mod references;
 
 use crate::{Body, Environment, LineType, Model, OutputSettings, Reference, Vessel};
@@ -125,14 +126,20 @@ pub(super) fn resolve_case(
         .dynamics
         .as_ref()
         .map(|table| analysis::dynamics(table, &assembly.vessels, log));
+    let path = table
+        .path
+        .as_ref()
+        .and_then(|table| path::resolve(table, &assembly, &names, log));
     let mut channels = channel::output_channels(&table.output, &assembly, &names, log);
     let references = references::resolve(references, &assembly, &names, log);
     let figure_channels = channel::figures(figures, &assembly, &names, log);
-    // Points of lines that are drawn or compared must be recorded too.
+    let stop = path.as_ref().and_then(|path| path.stop.as_ref());
+    // Points of lines that are drawn or compared, or that end a path, must be recorded too.
     let used = references
         .iter()
         .map(|reference| &reference.channel)
-        .chain(&figure_channels);
+        .chain(&figure_channels)
+        .chain(stop.map(|stop| &stop.channel));
     for used in used.filter(|channel| channel::is_line_point(channel)) {
         if !channels.contains(used) {
             channels.push(used.clone());
@@ -162,6 +169,7 @@ pub(super) fn resolve_case(
         loads: filled(loads)?,
         statics,
         dynamics,
+        path,
         output,
     };
     Some(ResolvedCase {

@@ -43,6 +43,8 @@ pub(super) struct Names {
     pub bodies: Lookup,
     /// Lines.
     pub lines: Lookup,
+    /// Loads.
+    pub loads: Lookup,
 }
 
 impl Lookup {
@@ -125,6 +127,7 @@ impl Names {
             moving_vessels: table.vessels.0.len(),
             bodies: Lookup::new("body").add(&table.bodies),
             lines: Lookup::new("line").add(&table.lines),
+            loads: Lookup::new("load").add(&table.loads),
         }
     }
 

@@ -64,22 +64,8 @@ fn reference(
     written: [&Real<AnyMeasure>; 2],
     log: &mut Log,
 ) -> Option<Reference> {
-    let (expected, si_per_unit) = unit_of(channel.unit);
-    for number in written {
-        if let Some(powers) = number.powers
-            && powers != expected
-        {
-            let found = name_of(powers).map_or_else(|| describe_powers(powers), str::to_owned);
-            let message = format!(
-                "`{}` is in {}, but the value is {found}",
-                channel.name, channel.unit
-            );
-            let help = format!("write the value in {}", channel.unit);
-            log.error(Code::Dimension, &number.span, message, help);
-            return None;
-        }
-    }
-    let [low, high] = written.map(|number| number.si / si_per_unit);
+    let low = in_unit_of(&channel, written[0], log)?;
+    let high = in_unit_of(&channel, written[1], log)?;
     if low > high {
         let unit = channel.unit;
         let message = format!("`range` runs from {low} down to {high} {unit}");
@@ -101,6 +87,28 @@ fn reference(
         high,
         source: table.source.value.clone(),
     })
+}
+
+/// A number in the unit of a channel; notes an error when it measures something else.
+pub(super) fn in_unit_of(
+    channel: &Channel,
+    number: &Real<AnyMeasure>,
+    log: &mut Log,
+) -> Option<f64> {
+    let (expected, si_per_unit) = unit_of(channel.unit);
+    if let Some(powers) = number.powers
+        && powers != expected
+    {
+        let found = name_of(powers).map_or_else(|| describe_powers(powers), str::to_owned);
+        let message = format!(
+            "`{}` is in {}, but the value is {found}",
+            channel.name, channel.unit
+        );
+        let help = format!("write the value in {}", channel.unit);
+        log.error(Code::Dimension, &number.span, message, help);
+        return None;
+    }
+    Some(number.si / si_per_unit)
 }
 
 /// Powers and size of a channel's unit.

@@ -8,6 +8,7 @@ mod line_type;
 mod load;
 mod motion;
 mod output;
+mod path;
 mod study;
 
 pub(super) use analysis::{DynamicsTable, IntegratorChoice, StaticsTable};
@@ -22,4 +23,5 @@ pub(super) use line_type::{GeneralTable, LineTypeTable, PipeTable};
 pub(super) use load::{LoadHarmonicTable, LoadTable};
 pub(super) use motion::{DegreeChoice, HarmonicTable, LegTable, MotionTable, TowTable};
 pub(super) use output::{FigureTable, OutputTable, ReferenceTable, StatisticChoice};
+pub(super) use path::{PathStopTable, PathTable};
 pub(super) use study::{CaseTable, ModelTable, StudyTable};

@@ -6,7 +6,7 @@ use crate::file::read::{Named, Text};
 
 use super::{
     AnchorTable, BodyTable, DynamicsTable, EnvironmentTable, FigureTable, LineTable, LineTypeTable,
-    LoadTable, MotionTable, OutputTable, ReferenceTable, StaticsTable, VesselTable,
+    LoadTable, MotionTable, OutputTable, PathTable, ReferenceTable, StaticsTable, VesselTable,
 };
 
 table! {
@@ -57,6 +57,8 @@ table! {
         statics: StaticsTable = NodeValue::empty_table(),
         /// How the motion is integrated; without this table only statics can be computed.
         dynamics: Option<DynamicsTable>,
+        /// The equilibrium path that `catenix path` follows.
+        path: Option<PathTable>,
         /// What is recorded.
         output: OutputTable = NodeValue::empty_table(),
     }
