@@ -17,9 +17,9 @@ mod junctions;
 mod newton;
 pub mod so3;
 pub mod spline;
-pub mod time_table;
 #[cfg(test)]
 mod test_systems;
+pub mod time_table;
 
 pub use bdf::Bdf;
 pub use block::{Block6, BlockLu, SingularBlock};
