@@ -30,6 +30,9 @@ pub(crate) enum Command {
     /// Find the static equilibrium of each load case
     #[command(after_help = EXIT_CODES)]
     Statics(StaticsArgs),
+    /// Follow the equilibrium path of each load case as its loads are scaled
+    #[command(after_help = EXIT_CODES)]
+    Path(PathArgs),
     /// Compute the load cases, write the results and figures, and print a summary
     #[command(after_help = EXIT_CODES)]
     Run(RunArgs),
@@ -52,6 +55,25 @@ pub(crate) struct CheckArgs {
 pub(crate) struct StaticsArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
+    #[command(flatten)]
+    pub(crate) output: OutputArgs,
+    #[command(flatten)]
+    pub(crate) work: WorkArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PathArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Write all points with all channels into this file, as comma-separated values
+    #[arg(long, value_name = "FILE")]
+    pub(crate) csv: Option<PathBuf>,
+    /// Draw the factor against a channel into this file: SVG, or PNG where the name ends so
+    #[arg(long, value_name = "FILE")]
+    pub(crate) figure: Option<PathBuf>,
+    /// Channel of the figure [default: the first that the model file asks for]
+    #[arg(long, value_name = "NAME", requires = "figure")]
+    pub(crate) channel: Option<String>,
     #[command(flatten)]
     pub(crate) output: OutputArgs,
     #[command(flatten)]

@@ -27,6 +27,11 @@ pub(crate) enum Failure {
     Store(#[from] StoreError),
     #[error("there is no load case `{name}` in the model file; it has {available}")]
     UnknownCase { name: String, available: String },
+    #[error(
+        "no figure can be drawn of the channel `{name}`: write --channel with the name of one, for \
+         example `{example}`; `catenix path --json` lists them all"
+    )]
+    UnknownChannel { name: String, example: String },
     #[error("cannot read {path}: {source}")]
     Read {
         path: String,
@@ -43,7 +48,7 @@ impl Failure {
             Failure::Model(errors) if is_unreadable(errors) => Exit::InputOutput,
             Failure::Model(_) | Failure::System { .. } => Exit::Model,
             Failure::Store(_) | Failure::Read { .. } | Failure::Start { .. } => Exit::InputOutput,
-            Failure::UnknownCase { .. } => Exit::Usage,
+            Failure::UnknownCase { .. } | Failure::UnknownChannel { .. } => Exit::Usage,
         }
     }
 
@@ -53,6 +58,7 @@ impl Failure {
             Failure::System { .. } => "model::system",
             Failure::Store(error) => error.code(),
             Failure::UnknownCase { .. } => "usage::unknown_case",
+            Failure::UnknownChannel { .. } => "usage::unknown_channel",
             Failure::Read { .. } => "io::read",
             Failure::Start { .. } => "io::start",
         }

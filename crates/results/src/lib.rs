@@ -4,7 +4,7 @@
 //! [`CaseRecorder`] per load case, which writes histories, line fields, range graphs, the static
 //! state and the solver's account while the case runs. [`StoredStudy`] reads a store back, whether
 //! it was finished, interrupted or killed, and makes the same [`Summary`] from it. [`figure`] draws
-//! one channel of all cases against time.
+//! one channel of all cases against time. [`StudyPaths`] holds equilibrium paths.
 //!
 //! The layout of the store is in docs/results.md; it opens in xarray as it is.
 
@@ -14,6 +14,7 @@ pub mod figure;
 mod layout;
 mod outcome;
 mod overview;
+mod path;
 mod recorder;
 mod sample;
 mod series;
@@ -30,6 +31,7 @@ pub use error::StoreError;
 pub use layout::{STORE_FORMAT, STORE_NAME};
 pub use outcome::{CaseOutcome, DynamicsFacts, StaticsFacts, mean_order};
 pub use overview::{BodyOverview, CurrentOverview, LineOverview, ModelOverview, VesselOverview};
+pub use path::{CasePath, PathChannel, PathPointFacts, StudyPaths};
 pub use recorder::CaseRecorder;
 pub use sample::Sample;
 pub use statistics::{Extremes, RangeGraph, WindowStatistics};

@@ -17,7 +17,7 @@ use cpu_time::ThreadTime;
 use crate::watch::Watch;
 
 /// Elapsed time between two looks of the watch.
-const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
+pub(crate) const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
 /// What ends a case early.
 enum Halt {
@@ -189,7 +189,7 @@ impl Account {
 }
 
 /// The engine's view of a step, as results see it.
-struct EngineSample<'a, 'b>(&'a StepView<'b>);
+pub(crate) struct EngineSample<'a, 'b>(pub(crate) &'a StepView<'b>);
 
 impl Sample for EngineSample<'_, '_> {
     fn time(&self) -> f64 {
@@ -213,7 +213,7 @@ impl Sample for EngineSample<'_, '_> {
     }
 }
 
-fn flow(stop: bool) -> ControlFlow<()> {
+pub(crate) fn flow(stop: bool) -> ControlFlow<()> {
     if stop {
         ControlFlow::Break(())
     } else {
@@ -240,7 +240,7 @@ fn dynamics_code(error: &DynamicsError) -> &'static str {
     }
 }
 
-fn case_error(code: &str, error: &dyn std::error::Error) -> CaseError {
+pub(crate) fn case_error(code: &str, error: &dyn std::error::Error) -> CaseError {
     CaseError {
         code: code.to_owned(),
         message: error.to_string(),

@@ -1,11 +1,13 @@
 //! Computes studies: load cases with everything recorded, and how good the numbers are.
 //!
 //! The engine integrates one system; the results crate stores what it is given. This crate brings
-//! the two together, for every adapter alike: [`compute_case`] and [`compute_statics`] run one load
-//! case.
+//! the two together, for every adapter alike: [`compute_case`], [`compute_statics`] and
+//! [`compute_path`] run one load case.
 
 mod case;
+mod path;
 mod watch;
 
 pub use case::{compute_case, compute_statics};
+pub use path::compute_path;
 pub use watch::Watch;

@@ -1,11 +1,13 @@
 //! One file per command.
 
 mod check;
+mod path;
 mod run;
 mod statics;
 mod summary;
 
 pub(crate) use check::{CheckReport, check};
+pub(crate) use path::path;
 pub(crate) use run::run;
 pub(crate) use statics::statics;
 pub(crate) use summary::summary;

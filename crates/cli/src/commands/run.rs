@@ -15,7 +15,7 @@ use crate::interrupt::Interrupt;
 use crate::{print, tables};
 
 /// Pixels per unit of a figure: 1800 across, 300 dots per inch at the width of a page.
-const PNG_SCALE: f64 = 2.0;
+pub(super) const PNG_SCALE: f64 = 2.0;
 
 /// What `run --json` prints.
 #[derive(Debug, Serialize)]

@@ -3,11 +3,13 @@
 mod check;
 mod grid;
 mod number;
+mod path;
 mod references;
 mod statics;
 mod summary;
 
 pub(crate) use check::check_text;
+pub(crate) use path::path_text;
 pub(crate) use statics::statics_text;
 pub(crate) use summary::{files_text, summary_text};
 

@@ -23,7 +23,7 @@ const PLOT_HEIGHT: f64 = 380.0;
 const MARGIN: f64 = 18.0;
 const RIGHT: f64 = 26.0;
 
-/// Curves against time, with everything that explains them.
+/// Curves, mostly against time, with everything that explains them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
     /// Title above the axes.
@@ -32,7 +32,7 @@ pub struct Chart {
     pub x_label: String,
     /// What the vertical axis is, without its unit.
     pub y_label: String,
-    /// Unit of the values; newtons, newton metres and pascals are drawn in thousands or millions
+    /// Unit of the values, empty for none; newtons, newton metres and pascals are drawn in thousands or millions
     /// where the numbers are long.
     pub y_unit: String,
     /// Remark below the legend; may be empty.
@@ -46,7 +46,7 @@ pub struct Chart {
 pub struct Curve {
     /// Text in the legend.
     pub label: String,
-    /// Points by increasing x; NaN leaves a gap.
+    /// Points in the order in which they are joined; NaN leaves a gap.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -81,7 +81,7 @@ pub fn study_chart(study: &StoredStudy, figure: &StoredFigure) -> Result<Chart, 
 }
 
 /// `hose.end_b.force_x` as "hose, end B, force x".
-fn channel_label(channel: &str) -> String {
+pub(crate) fn channel_label(channel: &str) -> String {
     channel
         .replace("end_a", "end A")
         .replace("end_b", "end B")
@@ -144,7 +144,10 @@ impl Chart {
             Anchor::Middle,
             SMALL,
             INK,
-            format!("{} [{unit}]", self.y_label),
+            match unit.as_str() {
+                "" => self.y_label.clone(),
+                unit => format!("{} [{unit}]", self.y_label),
+            },
             false,
         ) {
             label.upwards = true;

@@ -14,5 +14,6 @@ mod legend;
 mod png;
 mod svg;
 
+pub(crate) use chart::channel_label;
 pub use chart::{Chart, Curve, study_chart};
 pub use drawing::Drawing;
