@@ -290,6 +290,158 @@ fn a_lost_path_keeps_its_points() {
     assert_eq!(found.points.len(), 1);
 }
 
+#[test]
+fn a_pinned_column_on_a_slide_buckles_at_its_euler_load() {
+    let (ei, l) = (1000.0, 2.0);
+    let euler = PI * PI * ei / (l * l);
+    let text = format!(
+        r#"
+        environment.gravity = 0
+        [line_types.column]
+        kind = "general"
+        outer_diameter = "0.02 m"
+        mass = "3 kg/m"
+        axial_stiffness = "40 MN"
+        bending_stiffness = {ei:?}
+        [anchors.foot]
+        position = [0, 0, 0]
+        [anchors.guide]
+        position = [0, 0, {l:?}]
+        [lines.column]
+        sections = [{{ type = "column", length = {l:?}, elements = 20 }}]
+        end_a = {{ to = "foot", joint = "hinge", direction = [0, 0, 1] }}
+        end_b = {{ to = "guide", joint = "hinge", direction = [0, 0, 1], slides_along = [0, 0, 1] }}
+        [loads.press]
+        on = "column"
+        at = {l:?}
+        force = [0, 0, {press:?}]
+        [path]
+        range = [0, 1.5]
+        "#,
+        press = -euler,
+    );
+    let found = follow(&text);
+    let branch = found
+        .points
+        .iter()
+        .find(|point| point.event == Some(PathEvent::Bifurcation))
+        .unwrap();
+    // The hinges let it buckle in one plane. A pinned chain of N links buckles at
+    // (2 N / pi)^2 sin^2(pi / 2 N) of the Euler load; the last shortened step leaves 1e-4.
+    let links: f64 = 20.0;
+    let chain = (2.0 * links / PI * (0.5 * PI / links).sin()).powi(2);
+    assert_near("factor", branch.factor, chain, 1e-4);
+    assert_eq!(branch.unstable, 1);
+    assert_near(
+        "foot",
+        found.at(1.5, "column.end_a.force_z"),
+        -1.5 * euler,
+        1e-6 * euler,
+    );
+    assert_near(
+        "guide",
+        found.at(1.5, "column.end_b.force_z"),
+        0.0,
+        1e-6 * euler,
+    );
+}
+
+/// Distance of the loaded points of a ring of radius 1 and EI = 1 that is pulled apart by `load`:
+/// an inextensible elastica. On a quarter, from the load, theta'' = -(P / 2) cos(theta), theta = 0 at
+/// the load and pi / 2 at the side; by shooting on the curvature at the load. A ring that was bent
+/// from a straight rod does the same in its plane: the turn of the closed ring is fixed, so its
+/// natural curvature drops out of the energy.
+fn ring_height(load: f64) -> f64 {
+    let shoot = |curvature: f64| {
+        let n = 2000;
+        let h = 0.5 * PI / n as f64;
+        let rate = |s: [f64; 3]| [s[1], -0.5 * load * s[0].cos(), s[0].sin()];
+        let moved = |s: [f64; 3], k: [f64; 3], h: f64| [0, 1, 2].map(|i| s[i] + h * k[i]);
+        let mut state = [0.0, curvature, 0.0];
+        for _ in 0..n {
+            let k1 = rate(state);
+            let k2 = rate(moved(state, k1, 0.5 * h));
+            let k3 = rate(moved(state, k2, 0.5 * h));
+            let k4 = rate(moved(state, k3, h));
+            let mean = [0, 1, 2].map(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0);
+            state = moved(state, mean, h);
+        }
+        state
+    };
+    let (mut low, mut high) = (-5.0, 10.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if shoot(middle)[0] < 0.5 * PI {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    2.0 * shoot(low)[2]
+}
+
+#[test]
+fn val_elastica_a_ring_is_pulled_and_pinched() {
+    // Linear theory for a small load: (pi / 4 - 2 / pi) P R^3 / EI.
+    let small = (ring_height(1e-3) - 2.0) / 1e-3;
+    assert_near("small load", small, 0.25 * PI - 2.0 / PI, 1e-4);
+    let text = |elements: usize, range: &str, at: &str| {
+        let points: Vec<String> = (0..=elements)
+            .map(|k| {
+                let (sin, cos) = (2.0 * PI * k as f64 / elements as f64).sin_cos();
+                format!("[{sin:?}, 0, {:?}]", 1.0 - cos)
+            })
+            .collect();
+        let shape = points.join(", ");
+        let length = 2.0 * PI;
+        format!(
+            r#"
+            environment.gravity = 0
+            [line_types.strip]
+            kind = "general"
+            outer_diameter = "0.01 m"
+            mass = "1 kg/m"
+            axial_stiffness = 1e5
+            bending_stiffness = 1
+            [anchors.below]
+            position = [0, 0, 0]
+            [lines.ring]
+            sections = [{{ type = "strip", length = {length:?}, elements = {elements} }}]
+            start_shape = [{shape}]
+            end_a = {{ to = "below", joint = "fixed", direction = [1, 0, 0] }}
+            end_b = {{ to = "below", joint = "fixed", direction = [1, 0, 0] }}
+            [loads.pull]
+            on = "ring"
+            at = {half:?}
+            force = [0, 0, 1]
+            [output]
+            channels = ["ring.z@{half:?}m", "ring.x@{half:?}m"]
+            [path]
+            range = {range}
+            at = {at}
+            "#,
+            half = PI,
+        )
+    };
+    for (range, loads) in [("[0, 8]", [1.0, 4.0, 8.0]), ("[-4, 0]", [-1.0, -2.5, -4.0])] {
+        let errors = |elements: usize| {
+            let found = follow(&text(elements, range, &format!("{loads:?}")));
+            assert!(found.report.is_ok(), "{:?}", found.report);
+            let name = found.names.iter().find(|name| name.starts_with("ring.z@"));
+            let name = name.unwrap().clone();
+            loads.map(|load| (found.at(load, &name) - ring_height(load)).abs())
+        };
+        let (coarse, fine) = (errors(40), errors(80));
+        for (coarse, fine) in coarse.into_iter().zip(fine) {
+            // A polygon of 80 sides: second order, 8 / N^2 of the radius at the largest pinch.
+            assert!(
+                fine < 3e-3 && coarse / fine > 3.8,
+                "{coarse:.2e} to {fine:.2e}"
+            );
+        }
+    }
+}
+
 /// Two stiff bars that meet at a body above the middle of their feet: half span b, rise h.
 fn two_bars(b: f64, h: f64, ea: f64, load: f64, path: &str) -> String {
     let length = b.hypot(h);
