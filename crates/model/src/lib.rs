@@ -19,7 +19,8 @@ pub use analysis::{DynamicsSettings, IntegratorSettings, StaticsSettings, StepCo
 pub use body::{Body, Vessel};
 pub use environment::{Current, CurrentPoint, Environment, Seabed, Water};
 pub use line::{
-    Attachment, EndConnection, Joint, Line, LineEnd, LineType, PipeWall, Section, SupportRef,
+    Attachment, EndConnection, Joint, Line, LineEnd, LineType, NaturalShape, PipeWall, Section,
+    SupportRef,
 };
 pub use load::{LoadPlace, LoadVariation, PointLoad};
 pub use motion::{Degree, Motion, TowLeg};

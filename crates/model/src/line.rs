@@ -11,18 +11,25 @@ pub struct LineType {
     pub inner_diameter: f64,
     /// Mass with content [kg/m].
     pub mass: f64,
-    /// Axial stiffness EA [N].
+    /// Axial stiffness EA [N]; with an `axial_law`, its slope at no strain, in tension.
     pub axial_stiffness: f64,
-    /// Bending stiffness EI, the same about both normal axes [N m2]; 0 is a chain.
-    pub bending_stiffness: f64,
+    /// Strain [-] and tension [N], both strictly increasing, with (0, 0) among them, (n_points x 2);
+    /// `None`: linear.
+    pub axial_law: Option<Vec<[f64; 2]>>,
+    /// Bending stiffness EI about the section's local y and z (2) [N m2]; 0 is a chain. With a
+    /// `bending_law`, its slope at no curvature, twice.
+    pub bending_stiffness: [f64; 2],
+    /// Curvature [1/m] and moment [N m], the same about all axes, both strictly increasing from
+    /// (0, 0) on, (n_points x 2); `None`: linear.
+    pub bending_law: Option<Vec<[f64; 2]>>,
     /// Torsional stiffness GJ [N m2].
     pub torsional_stiffness: f64,
     /// Shear stiffness [N] (kappa G A); `None`: rigid in shear (Euler-Bernoulli).
     pub shear_stiffness: Option<f64>,
     /// Second moment of mass about the line's axis [kg m].
     pub polar_inertia: f64,
-    /// Second moment of mass of the section about the axes across the line [kg m].
-    pub rotary_inertia: f64,
+    /// Second moments of mass of the section about its local y and z (2) [kg m].
+    pub rotary_inertia: [f64; 2],
     /// Stiffness-proportional structural damping time: damping = this x stiffness [s].
     pub structural_damping: f64,
     /// Normal drag coefficient, on the outer diameter [-].
@@ -56,6 +63,27 @@ pub struct Section {
     pub line_type: usize,
     /// Unstretched length of each element from end A to end B, (n_elements) [m].
     pub element_lengths: Vec<f64>,
+    /// Stress-free shape.
+    pub natural: NaturalShape,
+}
+
+/// How a section is bent and twisted where no stress acts.
+///
+/// Going from A to B, the section's axes turn about their own x (along the line), y and z by twist
+/// and curvatures per metre. Source: docs/theory/sections.md, eq. (1).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct NaturalShape {
+    /// Curvature about local y and z (2) [1/m].
+    pub curvature: [f64; 2],
+    /// Twist [rad/m].
+    pub twist: f64,
+}
+
+impl NaturalShape {
+    /// Straight and without twist.
+    pub fn is_straight(&self) -> bool {
+        *self == NaturalShape::default()
+    }
 }
 
 /// A small rigid lump on a line: float, clump weight or pump.
@@ -128,6 +156,11 @@ pub struct EndConnection {
     /// Direction of the line from A to B at the connection, in local axes, unit (3) [-]. Matters
     /// for joints that hold a direction.
     pub direction_local: [f64; 3],
+    /// Local y of the line's sections at this end, in local axes, unit, normal to the direction
+    /// (3) [-]. At hinges and universal joints it is their axis.
+    pub axis_local: [f64; 3],
+    /// Whether the user wrote the axis.
+    pub axis_given: bool,
     /// The joint.
     pub joint: Joint,
     /// Direction along which the joint's point slides freely, in local axes, unit (3) [-].

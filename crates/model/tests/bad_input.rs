@@ -163,6 +163,55 @@ fn each_kind_of_bad_input() {
             "inner_diameter = \"0.05 m\"",
             "inner_diameter = \"50 cm\"",
         ),
+        ("no axial stiffness", "axial_stiffness = \"10 MN\"", ""),
+        (
+            "axial stiffness twice",
+            "axial_stiffness = \"10 MN\"",
+            "axial_stiffness = \"10 MN\"\naxial_law = [{ strain = 0.1, tension = 1 }]",
+        ),
+        (
+            "empty axial law",
+            "axial_stiffness = \"10 MN\"",
+            "axial_law = []",
+        ),
+        (
+            "slack compression",
+            "axial_stiffness = \"10 MN\"",
+            "axial_law = [{ strain = -0.1, tension = 0 }, { strain = 0.1, tension = \"1 MN\" }]",
+        ),
+        (
+            "strains out of order",
+            "axial_stiffness = \"10 MN\"",
+            "axial_law = [{ strain = 0.1, tension = 1 }, { strain = 0.05, tension = 2 }]",
+        ),
+        (
+            "bending stiffness thrice",
+            "mass = \"10 kg/m\"",
+            "mass = \"10 kg/m\"\nbending_stiffness = 1\nbending_stiffness_y = 1\n\
+             bending_law = [{ curvature = 1, moment = 1 }]",
+        ),
+        (
+            "falling moment",
+            "mass = \"10 kg/m\"",
+            "mass = \"10 kg/m\"\nbending_law = [{ curvature = 0.1, moment = 2 }, \
+             { curvature = 0.2, moment = 2 }]",
+        ),
+        (
+            "bending law in another dimension",
+            "mass = \"10 kg/m\"",
+            "mass = \"10 kg/m\"\nbending_law = [{ curvature = \"1 m\", moment = \"1 N\" }]",
+        ),
+        (
+            "a curved chain",
+            "elements = 6 }",
+            "elements = 6, natural_curvature_y = 0.01 }",
+        ),
+        (
+            "a tight coil",
+            "elements = 6 }",
+            "elements = 6, natural_curvature_z = 0.2, natural_twist = \"20 deg/m\" }",
+        ),
+        ("flat rectangle", "kind = \"pipe\"", "kind = \"rectangle\""),
         ("zero length", "length = \"60 m\"", "length = \"0 m\""),
         ("no element", "elements = 6", "elements = 0"),
         ("half an element", "elements = 6", "elements = 6.5"),

@@ -60,7 +60,7 @@ fn a_system_in_space_is_read() {
     assert_eq!(model.environment.gravity, 0.0);
     assert_eq!(model.environment.fluid_density(), 0.0);
     assert_eq!(model.bodies[0].volume, 0.0);
-    assert_eq!(model.line_types[0].rotary_inertia, 10.0);
+    assert_eq!(model.line_types[0].rotary_inertia, [10.0; 2]);
     assert_eq!(
         model.lines[0].start_shape,
         [[0.0, 0.0, 0.0], [4.0, 3.0, 0.0], [8.0, 0.0, 0.0]]

@@ -82,7 +82,7 @@ fn read(text: &str) {
                     .iter()
                     .all(|value| value.is_finite() && *value > 0.0)
             );
-            assert!(line_type.bending_stiffness.is_finite());
+            assert!(line_type.bending_stiffness.iter().all(|k| k.is_finite()));
         }
         for body in &model.bodies {
             assert!(

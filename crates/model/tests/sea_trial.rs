@@ -172,7 +172,7 @@ fn line_types_are_the_reconstructed_ones() {
     );
     assert_relative_eq!(pipe.axial_stiffness, 2.06e11 * wall, max_relative = 1e-14);
     assert_relative_eq!(
-        pipe.bending_stiffness,
+        pipe.bending_stiffness[0],
         2.06e11 * second_moment,
         max_relative = 1e-14
     );
@@ -190,7 +190,7 @@ fn line_types_are_the_reconstructed_ones() {
     assert_eq!(hose.mass, 57.7);
     assert_eq!(hose.axial_stiffness, 5e6);
     assert_eq!(
-        (hose.bending_stiffness, hose.torsional_stiffness),
+        (hose.bending_stiffness[0], hose.torsional_stiffness),
         (1e4, 1e4)
     );
     assert_eq!(hose.structural_damping, 0.02);

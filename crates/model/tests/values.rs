@@ -68,7 +68,7 @@ fn defaults_are_the_documented_ones() {
     assert_eq!(
         (
             rope.inner_diameter,
-            rope.bending_stiffness,
+            rope.bending_stiffness[0],
             rope.torsional_stiffness
         ),
         (0.0, 0.0, 0.0)

@@ -50,7 +50,8 @@ impl PairState {
         second: &Side,
         prediction: Option<&Prediction>,
     ) -> Vector3 {
-        let predicted = prediction.map(|p| p.force(law.stiffness(), &self.axis(second)));
+        let predicted =
+            prediction.map(|p| p.force(law.stiffness(), &self.axis(second), law.forward()));
         match self {
             PairState::Beam(state) => predicted.unwrap_or(state.elastic.force),
             PairState::Joint(state) => -predicted.unwrap_or(state.elastic),
@@ -112,8 +113,10 @@ impl EvaluatedPair {
 
     pub(super) fn energy(&self, law: &ConnectorLaw) -> f64 {
         match (&self.state, law) {
-            (PairState::Beam(state), ConnectorLaw::Beam(law)) => state.energy(law),
-            (PairState::Joint(state), _) => state.energy(),
+            (PairState::Beam(state), ConnectorLaw::Beam(law)) => {
+                state.energy(law, &self.first, &self.second)
+            }
+            (PairState::Joint(state), ConnectorLaw::Joint(law)) => state.energy(law, &self.second),
             _ => unreachable!("a state is made by its own law"),
         }
     }

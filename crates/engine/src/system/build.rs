@@ -1,21 +1,20 @@
 //! From the model to the assembled system.
 
 use catenix_model::{
-    Attachment, Body, EndConnection, Joint, Line, LineEnd, LineType, Model, PointLoad, SupportRef,
+    Attachment, Body, EndConnection, Line, LineEnd, LineType, Model, PointLoad, SupportRef,
 };
-use catenix_numerics::{Chain, Configuration, Matrix3, Topology, Vector3, so3};
+use catenix_numerics::{Chain, Configuration, Matrix3, Topology, Vector3};
 
+use super::ends::end_connector;
 use super::loads;
 use super::shape::{self, Supports};
-use super::slide::Slide;
 use super::{
     Carrier, Connector, ConnectorLaw, Frame, FrameLump, LineLayout, Mount, Place, System,
     SystemError,
 };
 use crate::body::lump::Lump;
 use crate::body::motion::PrescribedMotion;
-use crate::element::dem::joint::{DotLaw, DotSpring, JointStiffness};
-use crate::element::dem::stiffness::{ConnectorStiffness, HalfElement, rotary_share};
+use crate::element::dem::stiffness::rotary_share;
 use crate::hydro::current::CurrentField;
 use crate::hydro::morison::DragCoefficients;
 
@@ -117,19 +116,21 @@ fn residual_floor(connectors: &[Connector], furthest: f64) -> f64 {
     let stiffest = connectors
         .iter()
         .map(|connector| connector.law.stiffness())
-        .fold(0.0, |largest: f64, k| largest.max(k.axial).max(k.shear));
+        .fold(0.0, |largest: f64, k| largest.max(k.stiffest()));
     ROUND_OFF * f64::EPSILON * furthest * stiffest
 }
 
 fn lay_out(line: &Line, first_frame: usize) -> LineLayout {
     let mut arc_length = vec![0.0];
     let mut element_types = Vec::new();
+    let mut natural = Vec::new();
     let mut end = 0.0;
     for section in &line.sections {
         for length in &section.element_lengths {
             end += length;
             arc_length.push(end);
             element_types.push(section.line_type);
+            natural.push(section.natural);
         }
     }
     LineLayout {
@@ -138,6 +139,7 @@ fn lay_out(line: &Line, first_frame: usize) -> LineLayout {
         nodes: vec![None; arc_length.len()],
         arc_length,
         element_types,
+        natural,
     }
 }
 
@@ -152,8 +154,9 @@ fn element_frame(model: &Model, line_type: &LineType, length: f64) -> Frame {
     let radius_squared = length * length / 12.0;
     let added_normal = line_type.normal_added_mass * displaced;
     let half_flow = 0.5 * water * line_type.outer_diameter * length;
+    let share = rotary_share(line_type, length);
     let normal_inertia =
-        mass * radius_squared * rotary_share(line_type, length) + line_type.rotary_inertia * length;
+        [0, 1].map(|k| mass * radius_squared * share[k] + line_type.rotary_inertia[k] * length);
     Frame {
         axis: Vector3::x(),
         length,
@@ -161,8 +164,8 @@ fn element_frame(model: &Model, line_type: &LineType, length: f64) -> Frame {
         mass,
         inertia: Vector3::new(
             line_type.polar_inertia * length,
-            normal_inertia,
-            normal_inertia,
+            normal_inertia[0],
+            normal_inertia[1],
         ),
         drag: DragCoefficients {
             normal: line_type.normal_drag * half_flow,
@@ -171,7 +174,7 @@ fn element_frame(model: &Model, line_type: &LineType, length: f64) -> Frame {
         },
         added_normal,
         added_axial: line_type.axial_added_mass * displaced,
-        added_inertia: added_normal * radius_squared * rotary_share(line_type, length),
+        added_inertia: added_normal * radius_squared * (0.5 * (share[0] + share[1])),
         weight: mass * model.environment.gravity,
         buoyancy: displaced * model.environment.gravity,
         buoyancy_arm: Vector3::zeros(),
@@ -298,13 +301,9 @@ fn connect(
     connectors: &mut Vec<Connector>,
 ) -> Result<(), SystemError> {
     let line = &model.lines[index];
-    let half = |layout: &LineLayout, element: usize| HalfElement {
-        line_type: &model.line_types[layout.element_types[element]],
-        length: layout.arc_length[element + 1] - layout.arc_length[element],
-    };
     let mount = |layout: &LineLayout, element: usize, at_b: bool| Mount {
         carrier: Carrier::Free(layout.first_frame + element),
-        arm: Vector3::x() * half(layout, element).length * if at_b { 0.5 } else { -0.5 },
+        arm: Vector3::x() * layout.length(element) * if at_b { 0.5 } else { -0.5 },
         axes: Matrix3::identity(),
     };
     for node in 0..=layout.element_count {
@@ -317,8 +316,7 @@ fn connect(
         };
         let connector = match end {
             None => {
-                let stiffness =
-                    ConnectorStiffness::between(half(layout, node - 1), half(layout, node));
+                let stiffness = layout.stiffness(model, node);
                 let shift = Vector3::x() * stiffness.shift;
                 Connector {
                     law: ConnectorLaw::Beam(stiffness),
@@ -339,10 +337,11 @@ fn connect(
                 };
                 let rotation = shape.rotation[layout.first_frame + element];
                 end_connector(
+                    model,
                     index,
+                    layout,
                     end,
                     connection,
-                    half(layout, element),
                     mount(layout, element, end == 1),
                     &rotation,
                     supports,
@@ -364,113 +363,4 @@ fn connect(
         connectors.push(connector);
     }
     Ok(())
-}
-
-/// The connection of a line's end to a vessel or body.
-fn end_connector(
-    line: usize,
-    end: usize,
-    connection: &EndConnection,
-    half: HalfElement<'_>,
-    element: Mount,
-    element_rotation: &Matrix3,
-    supports: &Supports,
-) -> Connector {
-    let support = supports.get(connection.to);
-    let point = Vector3::from(connection.point_local);
-    let direction = Vector3::from(connection.direction_local);
-    let tangent: Vector3 = element_rotation.column(0).into();
-    let mut stiffness = ConnectorStiffness::clamp(half, end == 0);
-    if connection.slides_along.is_some() {
-        // The condensed slide has no rate.
-        stiffness.damping = 0.0;
-    }
-    let slide = |axes: &Matrix3, support_first| {
-        connection.slides_along.map(|axis| Slide {
-            support_first,
-            axis: axes.transpose() * Vector3::from(axis),
-        })
-    };
-    let place = match (connection.to, end) {
-        (SupportRef::Vessel(_), _) => Place::Grounded,
-        (SupportRef::Body(_), 0) => Place::Head(line),
-        (SupportRef::Body(_), _) => Place::Tail(line),
-    };
-    let on_support = |axes: Matrix3| Mount {
-        carrier: support.carrier,
-        arm: point,
-        axes,
-    };
-    // The element's axes turned the shortest way into the connection's direction: a line that is
-    // laid in its first shape is not twisted.
-    let untwisted = so3::shortest_arc(&tangent, &(support.rotation * direction)) * element_rotation;
-    if connection.joint == Joint::Fixed {
-        let shift = Vector3::x() * stiffness.shift;
-        let axes = support.rotation.transpose() * untwisted;
-        let clamp = on_support(axes).shifted(&shift);
-        let element = element.shifted(&shift);
-        let (first, second) = if end == 0 {
-            (clamp, element)
-        } else {
-            (element, clamp)
-        };
-        return Connector {
-            law: ConnectorLaw::Beam(stiffness),
-            first,
-            second,
-            place,
-            slide: slide(&axes, end == 0),
-        };
-    }
-    let torsion = 2.0 * half.line_type.torsional_stiffness / half.length;
-    let bending = 2.0 * half.line_type.bending_stiffness / half.length;
-    let spring = |support_axis: Vector3, element_axis: Vector3, law| DotSpring {
-        support_axis,
-        element_axis,
-        law,
-    };
-    // The cross's second axis, in the element: normal to the line and to the support's axis.
-    let second_axis = |axis: Vector3| {
-        let normal = tangent.cross(&(support.rotation * axis));
-        let normal = if normal.norm() > 1e-6 {
-            normal.normalize()
-        } else {
-            so3::any_normal(&tangent)
-        };
-        element_rotation.transpose() * normal
-    };
-    let springs = match connection.joint {
-        Joint::Ball {
-            rotational_stiffness,
-        } if rotational_stiffness > 0.0 => {
-            let series = 1.0 / (1.0 / rotational_stiffness + 1.0 / bending);
-            vec![spring(direction, Vector3::x(), DotLaw::Parallel(series))]
-        }
-        Joint::Ball { .. } | Joint::Fixed => Vec::new(),
-        Joint::Universal { axis_local } => {
-            let axis = Vector3::from(axis_local);
-            vec![spring(
-                axis,
-                second_axis(axis),
-                DotLaw::Perpendicular(torsion),
-            )]
-        }
-        Joint::Hinge { axis_local } => {
-            let axis = Vector3::from(axis_local);
-            vec![
-                spring(axis, second_axis(axis), DotLaw::Perpendicular(torsion)),
-                spring(axis, Vector3::x(), DotLaw::Perpendicular(bending)),
-            ]
-        }
-    };
-    Connector {
-        law: ConnectorLaw::Joint(JointStiffness {
-            half: stiffness,
-            springs,
-        }),
-        first: on_support(Matrix3::identity()),
-        second: element,
-        place,
-        slide: slide(&Matrix3::identity(), true),
-    }
 }

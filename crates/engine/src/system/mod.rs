@@ -6,9 +6,11 @@
 mod assembly;
 mod balance;
 mod build;
+mod ends;
 mod energy;
 mod frames;
 mod loads;
+mod natural;
 mod shape;
 mod slide;
 mod solver;
@@ -17,14 +19,14 @@ mod view;
 #[cfg(test)]
 mod tangent_test;
 
-use catenix_model::{ChannelTarget, LineType, Model};
+use catenix_model::{ChannelTarget, LineType, Model, NaturalShape};
 use catenix_numerics::{Configuration, Matrix3, Topology, Vector3};
 use thiserror::Error;
 
 use crate::body::lump::Lump;
 use crate::body::motion::PrescribedMotion;
 use crate::element::dem::joint::JointStiffness;
-use crate::element::dem::stiffness::ConnectorStiffness;
+use crate::element::dem::stiffness::{ConnectorStiffness, HalfElement};
 use crate::hydro::current::CurrentField;
 use crate::hydro::morison::DragCoefficients;
 use crate::load::variation;
@@ -186,6 +188,14 @@ impl ConnectorLaw {
         }
     }
 
+    /// 1 where a positive extension stretches the line, -1 where it compresses.
+    pub fn forward(&self) -> f64 {
+        match self {
+            ConnectorLaw::Beam(_) => 1.0,
+            ConnectorLaw::Joint(joint) => joint.forward,
+        }
+    }
+
     /// How far beyond the elements' meeting point, towards end B, the connector acts [m].
     pub fn shift(&self) -> f64 {
         match self {
@@ -206,6 +216,35 @@ pub(crate) struct LineLayout {
     pub arc_length: Vec<f64>,
     /// Line type of each element (n_elements).
     pub element_types: Vec<usize>,
+    /// Stress-free shape of each element (n_elements).
+    pub natural: Vec<NaturalShape>,
+}
+
+impl LineLayout {
+    /// Unstretched length of an element [m].
+    pub fn length(&self, element: usize) -> f64 {
+        self.arc_length[element + 1] - self.arc_length[element]
+    }
+
+    /// Half of an element, for the connector on one of its sides.
+    pub fn half<'a>(&self, model: &'a Model, element: usize) -> HalfElement<'a> {
+        HalfElement {
+            line_type: &model.line_types[self.element_types[element]],
+            length: self.length(element),
+            natural: self.natural[element],
+        }
+    }
+
+    /// Stiffness of the connector at a node; at an end, of the half element and a clamp.
+    pub fn stiffness(&self, model: &Model, node: usize) -> ConnectorStiffness {
+        if node == 0 {
+            ConnectorStiffness::clamp(self.half(model, 0), true)
+        } else if node == self.element_count {
+            ConnectorStiffness::clamp(self.half(model, node - 1), false)
+        } else {
+            ConnectorStiffness::between(self.half(model, node - 1), self.half(model, node))
+        }
+    }
 }
 
 /// A time at which loads are not smooth.
@@ -324,7 +363,7 @@ impl System {
                     Carrier::Vessel(_) => None,
                 })
                 .fold(f64::INFINITY, f64::min);
-            stiffness.axial.max(stiffness.shear) / lightest
+            stiffness.stiffest() / lightest
         });
         4.0 * f64::EPSILON * stiffest.fold(0.0, f64::max)
     }

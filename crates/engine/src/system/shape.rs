@@ -8,7 +8,7 @@
 use catenix_model::{EndConnection, Joint, Line, LineEnd, Model, SupportRef};
 use catenix_numerics::{Configuration, Matrix3, Vector3, so3};
 
-use super::{Carrier, LineLayout};
+use super::{Carrier, LineLayout, natural};
 use crate::body::motion::PrescribedMotion;
 
 /// Rounds of sinking and pulling back within the lines' lengths.
@@ -220,6 +220,13 @@ pub(super) fn first_shape(
 ) -> Configuration {
     let mut shape = Configuration::default();
     for (line, layout) in model.lines.iter().zip(layouts) {
+        if natural::has_directions(model, line) {
+            for (position, rotation) in directed_line(model, line, layout, supports) {
+                shape.position.push(position);
+                shape.rotation.push(rotation);
+            }
+            continue;
+        }
         let points = line_points(model, line, layout, supports);
         let mut rotation = Matrix3::identity();
         for k in 0..layout.element_count {
@@ -247,6 +254,50 @@ pub(super) fn first_shape(
     shape
 }
 
+/// Elements of a line whose sections have directions: along the same shapes as other lines, but
+/// a curved line that is not held at both ends starts in its stress-free shape.
+fn directed_line(
+    model: &Model,
+    line: &Line,
+    layout: &LineLayout,
+    supports: &Supports,
+) -> Vec<(Vector3, Matrix3)> {
+    let ends = [supports.point(&line.ends[0]), supports.point(&line.ends[1])];
+    let loose = ends.iter().any(Option::is_none);
+    if natural::is_curved(line) && loose && line.start_shape.is_empty() {
+        let held = usize::from(ends[0].is_none() && ends[1].is_some());
+        let point = ends[held].unwrap_or_else(Vector3::zeros);
+        let sign = if held == 0 { 1.0 } else { -1.0 };
+        let length = line.length();
+        let down = net_direction(model, line);
+        let surface = surface(model);
+        let end = &line.ends[held];
+        let away = loose_direction(end, held, &point, length, &down, surface, supports);
+        let direction = away * sign;
+        return natural::stress_free(model, line, layout, held, &point, &direction, supports);
+    }
+    let points = line_points(model, line, layout, supports);
+    let tangents: Vec<Vector3> = points
+        .windows(2)
+        .map(|pair| {
+            let tangent = (pair[1] - pair[0]).try_normalize(0.0);
+            tangent.unwrap_or_else(|| -Vector3::z())
+        })
+        .collect();
+    let rotations = natural::rotations_along(model, line, layout, &tangents, supports);
+    let middle = points.windows(2).map(|pair| (pair[0] + pair[1]) * 0.5);
+    middle.zip(rotations).collect()
+}
+
+/// Where a line tends to: down, or up if it is lighter than water.
+fn net_direction(model: &Model, line: &Line) -> Vector3 {
+    if net_weight(model, line) >= 0.0 {
+        -Vector3::z()
+    } else {
+        Vector3::z()
+    }
+}
+
 /// Node positions of a line, end A to end B.
 fn line_points(
     model: &Model,
@@ -258,11 +309,7 @@ fn line_points(
     if !line.start_shape.is_empty() {
         return along_polyline(line, layout);
     }
-    let down = if net_weight(model, line) >= 0.0 {
-        -Vector3::z()
-    } else {
-        Vector3::z()
-    };
+    let down = net_direction(model, line);
     let ends = [supports.point(&line.ends[0]), supports.point(&line.ends[1])];
     let away = |end: usize, start: &Vector3| {
         let surface = surface(model);
@@ -398,12 +445,14 @@ mod tests {
             nodes: Vec::new(),
             arc_length: vec![0.0, 2.0, 6.0, 7.0, 8.0],
             element_types: Vec::new(),
+            natural: Vec::new(),
         };
         // The sections give the line its length of 8 m, twice that of the polyline.
         let line = Line {
             sections: vec![catenix_model::Section {
                 line_type: 0,
                 element_lengths: vec![2.0, 4.0, 1.0, 1.0],
+                natural: catenix_model::NaturalShape::default(),
             }],
             ..line
         };

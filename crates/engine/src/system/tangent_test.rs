@@ -36,6 +36,20 @@ outer_diameter = "0.25 m"
 mass = "60 kg/m"
 axial_stiffness = "5 MN"
 bending_stiffness = "60 kN m^2"
+[line_types.strip]
+kind = "general"
+outer_diameter = "0.25 m"
+mass = "60 kg/m"
+axial_stiffness = "5 MN"
+bending_stiffness_y = "60 kN m^2"
+bending_stiffness_z = "20 kN m^2"
+structural_damping = "0.02 s"
+[line_types.yielding]
+kind = "general"
+outer_diameter = "0.25 m"
+mass = "60 kg/m"
+axial_law = [{ strain = -0.01, tension = "-20 kN" }, { strain = 0.002, tension = "8 kN" }, { strain = 0.05, tension = "60 kN" }]
+bending_law = [{ curvature = 0.05, moment = "3 kN m" }, { curvature = 0.2, moment = "5 kN m" }]
 [vessels.ship]
 position = ["0 m", "0 m", "0 m"]
 motions = ["roll"]
@@ -110,6 +124,13 @@ point = [0, "0.4 m", 0]
 force = [0, "5 kN", "2 kN"]
 moment = ["1 kN m", 0, 0]
 follows = true
+[lines.whip]
+sections = [{ type = "strip", length = "4 m", elements = 2, natural_curvature_y = 0.1, natural_curvature_z = -0.05, natural_twist = "8 deg/m" }, { type = "yielding", length = "4 m", elements = 3, natural_curvature_z = 0.1 }]
+end_a = { to = "ship", joint = "fixed", at = ["0 m", "4 m", "-2 m"], axis = [0, 1, 0] }
+end_b = { to = "buffer", joint = "hinge", at = ["0.1 m", "0.2 m", "0.75 m"] }
+[lines.goose]
+sections = [{ type = "strip", length = "6 m", elements = 3, natural_curvature_y = 0.3 }]
+end_a = { to = "buffer", joint = "ball", at = ["0.1 m", "0.2 m", "0.75 m"], direction = [0, 0, 1], rotational_stiffness = "5 kN m/rad" }
 [dynamics]
 duration = "1 s"
 "#;

@@ -27,6 +27,8 @@ struct NodeResult {
     bend_moment: f64,
     torque: f64,
     curvature: f64,
+    /// Elastic moment, signed as bend towards end B (3) [N m].
+    elastic_moment: Vector3,
 }
 
 impl StepView<'_> {
@@ -183,10 +185,16 @@ impl StepView<'_> {
             PairState::Beam(_) => beam_node(pair, shift),
             PairState::Joint(_) => joint_node(pair, node == 0),
         };
-        let stiffness = |k: usize| system.element_type(line, k).bending_stiffness;
         let last = layout.element_count - 1;
+        let sides = [node.saturating_sub(1), node.min(last)];
+        if system.connectors[index].law.stiffness().general.is_some() {
+            let of_side = |&k: &usize| self.section_curvature(line, k, pair, &result);
+            result.curvature = sides.iter().map(of_side).fold(0.0, f64::max);
+            return result;
+        }
+        let stiffness = |k: usize| system.element_type(line, k).bending_stiffness[0];
         // Where the stiffness jumps, the more flexible side has the larger curvature.
-        let bending = stiffness(node.saturating_sub(1)).min(stiffness(node.min(last)));
+        let bending = stiffness(sides[0]).min(stiffness(sides[1]));
         if bending > 0.0 {
             result.curvature = result.bend_moment / bending;
         } else {
@@ -196,6 +204,55 @@ impl StepView<'_> {
             result.curvature = angle_between(&first, &second).to_radians() / length;
         }
         result
+    }
+
+    /// Curvature of the section of an element beside a connector: the natural one, and what the
+    /// moment adds by the section's law.
+    ///
+    /// Source: docs/theory/sections.md, eq. (17).
+    fn section_curvature(
+        &self,
+        line: usize,
+        element: usize,
+        pair: &EvaluatedPair,
+        node: &NodeResult,
+    ) -> f64 {
+        let system = self.solver.system;
+        let line_type = system.element_type(line, element);
+        let elastic = &node.elastic_moment;
+        let across = elastic - node.axis * node.axis.dot(elastic);
+        // Directors half way between the two sections of a beam; those of the element at a joint.
+        let director = |column: usize| -> Vector3 {
+            let own: Vector3 = pair.second.rotation.column(column).into();
+            match &pair.state {
+                PairState::Beam(_) => (own + pair.first.rotation.column(column)).normalize(),
+                PairState::Joint(_) => own,
+            }
+        };
+        let moment = [director(1).dot(&across), director(2).dot(&across)];
+        let by_moment = match &line_type.bending_law {
+            Some(points) => {
+                let size = moment[0].hypot(moment[1]);
+                let share = if size > 0.0 {
+                    law_curvature(points, size) / size
+                } else {
+                    0.0
+                };
+                moment.map(|m| m * share)
+            }
+            None => {
+                let stiffness = line_type.bending_stiffness;
+                [0, 1].map(|k| {
+                    if stiffness[k] > 0.0 {
+                        moment[k] / stiffness[k]
+                    } else {
+                        0.0
+                    }
+                })
+            }
+        };
+        let natural = system.lines[line].natural[element].curvature;
+        (natural[0] + by_moment[0]).hypot(natural[1] + by_moment[1])
     }
 
     /// A free end carries nothing.
@@ -208,6 +265,10 @@ impl StepView<'_> {
         NodeResult {
             position: self.state.configuration.position[frame] + axis * half,
             axis,
+            curvature: {
+                let [y, z] = layout.natural[frame - layout.first_frame].curvature;
+                y.hypot(z)
+            },
             ..NodeResult::default()
         }
     }
@@ -254,6 +315,16 @@ impl StepView<'_> {
     }
 }
 
+/// Curvature [1/m] at a moment [N m] by the points of a bending law (curvature, moment).
+fn law_curvature(points: &[[f64; 2]], moment: f64) -> f64 {
+    let above = points.partition_point(|point| point[1] < moment);
+    let [a, b] = {
+        let upper = above.clamp(1, points.len() - 1);
+        [points[upper - 1], points[upper]]
+    };
+    a[0] + (moment - a[1]) * (b[0] - a[0]) / (b[1] - a[1])
+}
+
 fn pick(v: &Vector3, axis: Axis) -> f64 {
     v[axis as usize]
 }
@@ -287,6 +358,7 @@ fn beam_node(pair: &EvaluatedPair, shift: f64) -> NodeResult {
         bend_moment,
         torque,
         curvature: 0.0,
+        elastic_moment: state.elastic.moment + arm.cross(&state.elastic.force),
     }
 }
 
@@ -306,6 +378,7 @@ fn joint_node(pair: &EvaluatedPair, at_a: bool) -> NodeResult {
         bend_moment,
         torque: if at_a { torque } else { -torque },
         curvature: 0.0,
+        elastic_moment: if at_a { state.moment } else { -state.moment },
     }
 }
 

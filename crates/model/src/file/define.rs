@@ -88,6 +88,8 @@ macro_rules! kinds {
         pub(super) enum $name:ident { $($word:literal => $variant:ident($table:ty),)* }
     ) => {
         $(#[doc = $doc])*
+        // A file has few of them, each read once: their size does not matter.
+        #[allow(clippy::large_enum_variant)]
         #[derive(Debug, Clone)]
         pub(in crate::file) enum $name {
             $(#[doc = concat!("`kind = \"", $word, "\"`.")] $variant($table),)*

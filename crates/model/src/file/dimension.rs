@@ -92,6 +92,8 @@ dimensions! {
     RotationalStiffness: "a rotational stiffness", "N m/rad", [1, 2, -2, -1], "50 kN m/deg";
     ContactDamping: "a damping per length", "N s/m^2", [1, -1, -1, 0], "1 kN s/m^2";
     InverseLength: "a curvature", "1/m", [0, -1, 0, 0], "0.01 m^-1";
+    AnglePerLength: "a twist", "rad/m", [0, -1, 0, 1], "2 deg/m";
+    TorsionConstant: "a torsion constant", "m^4", [0, 4, 0, 0], "2.2e-5 m^4";
 }
 
 /// A length or an angle: the amplitude of a motion, which its degree of freedom decides.

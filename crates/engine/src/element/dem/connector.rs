@@ -9,12 +9,16 @@
 //! Forces are the exact gradient of the stored energy, so that momentum and energy are kept for any
 //! rotation; the tangent is exact.
 //!
+//! Lines whose sections have directions, a stress-free bend or a law given by points differ in the
+//! moment ([`super::bend`]) and the tension only; see docs/theory/sections.md.
+//!
 //! Source: docs/theory/dem.md, eqs. (1) to (12). Deviation from Li et al. 2011: rotations are
 //! finite, where the paper's six springs are written for small ones; the twist is that of
 //! Bergou et al. 2008 (discrete elastic rods).
 
 use catenix_numerics::{Matrix3, Vector3, so3};
 
+use super::bend::Bend;
 use super::pair::{PairForces, PairTangent, RateWeights, Sensitivity, Side};
 use super::stiffness::ConnectorStiffness;
 use so3::hat;
@@ -40,10 +44,12 @@ pub struct Prediction {
 
 impl Prediction {
     /// The force that belongs to the prediction, about the axis of the new configuration.
+    /// `forward`: 1 where a positive extension stretches, -1 where it compresses.
     #[inline]
-    pub fn force(&self, stiffness: &ConnectorStiffness, axis: &Vector3) -> Vector3 {
+    pub fn force(&self, stiffness: &ConnectorStiffness, axis: &Vector3, forward: f64) -> Vector3 {
         let across = self.across - axis * axis.dot(&self.across);
-        axis * (stiffness.axial * self.extension) + across * stiffness.shear
+        let (tension, _) = stiffness.tension(forward * self.extension);
+        axis * (forward * tension) + across * stiffness.shear
     }
 }
 
@@ -117,14 +123,27 @@ impl ConnectorState {
         let one_plus_cos = 0.5 * sum * sum;
         let gap = second.point - first.point;
         let extension = axis.dot(&gap);
-        let stretch = (stiffness.axial - stiffness.shear) * extension;
+        let stretch = match &stiffness.general {
+            None => (stiffness.axial - stiffness.shear) * extension,
+            Some(_) => stiffness.tension(extension).0 - stiffness.shear * extension,
+        };
         let cross = a.cross(&b);
-        let twist = if stiffness.torsion > 0.0 {
+        let twist = if stiffness.torsion > 0.0 || stiffness.general.is_some() {
             twist(first, second, &cross, one_plus_cos)
         } else {
             0.0
         };
-        let (ratio, _) = angle_over_sine(one_plus_cos - 1.0);
+        let moment = match &stiffness.general {
+            None => {
+                let (ratio, _) = angle_over_sine(one_plus_cos - 1.0);
+                cross * (stiffness.bending * ratio)
+                    + total * (stiffness.torsion * twist / one_plus_cos)
+            }
+            Some(law) => {
+                let torque = stiffness.torsion * (twist - law.rest_twist);
+                Bend::new(first, second, twist).moment(law, torque)
+            }
+        };
         let mean_spin = (first.spin + second.spin) * 0.5;
         let gap_rate = second.velocity - first.velocity - mean_spin.cross(&gap);
         let bend_rate = second.spin - first.spin;
@@ -134,10 +153,9 @@ impl ConnectorState {
             twist,
             elastic: Stress {
                 force: gap * stiffness.shear + axis * stretch,
-                moment: cross * (stiffness.bending * ratio)
-                    + total * (stiffness.torsion * twist / one_plus_cos),
+                moment,
             },
-            damping: stiffness.damping_stress(&axis, &gap_rate, &bend_rate),
+            damping: stiffness.damping_stress(&axis, [first, second], &gap_rate, &bend_rate),
             axes: [a, b],
             sum,
             stretch,
@@ -178,12 +196,13 @@ impl ConnectorState {
         let [a, b] = &self.axes;
         let m = &self.axis;
         let inverse = 1.0 / self.sum;
-        let (axial, shear) = (stiffness.axial, stiffness.shear);
+        let shear = stiffness.shear;
         let extension = m.dot(&self.gap);
+        let (_, axial) = stiffness.tension(extension);
         let across = &self.across;
         // Tension and shear force of the geometric part.
         let force_vector = match prediction {
-            Some(prediction) => prediction.force(stiffness, m),
+            Some(prediction) => prediction.force(stiffness, m, 1.0),
             None => self.elastic.force,
         };
         let tension = m.dot(&force_vector);
@@ -206,19 +225,13 @@ impl ConnectorState {
             - skewed.transpose())
             * (inverse * inverse);
 
-        // The moment of bending and torsion, by the two axes and by the difference of rotations.
-        let one_plus_cos = 0.5 * self.sum * self.sum;
-        let (ratio, slope) = angle_over_sine(one_plus_cos - 1.0);
-        let cross = a.cross(b);
-        let along_sum = m * self.sum;
-        let torque = stiffness.torsion * self.twist / one_plus_cos;
-        let by_cos = cross * (stiffness.bending * slope) - along_sum * (torque / one_plus_cos);
-        let bend = stiffness.bending * ratio;
-        let torsion = outer * (2.0 * stiffness.torsion / one_plus_cos);
-        let moment_by_first_axis =
-            by_cos * b.transpose() - b_hat * bend + Matrix3::identity() * torque;
-        let moment_by_second_axis =
-            by_cos * a.transpose() + a_hat * bend + Matrix3::identity() * torque;
+        let moment_by_spins = match &stiffness.general {
+            None => self.round_moment_by_spins(stiffness, &a_hat, &b_hat, &outer),
+            Some(law) => {
+                let torque = stiffness.torsion * (self.twist - law.rest_twist);
+                Bend::new(first, second, self.twist).moment_by_spins(law, torque, stiffness.torsion)
+            }
+        };
 
         let force = Sensitivity {
             translation: force_by_gap,
@@ -232,8 +245,8 @@ impl ConnectorState {
         };
         let moment = Sensitivity {
             translation: Matrix3::zeros(),
-            first_rotation: -(moment_by_first_axis * a_hat) - torsion,
-            second_rotation: -(moment_by_second_axis * b_hat) + torsion,
+            first_rotation: moment_by_spins[0],
+            second_rotation: moment_by_spins[1],
         };
         let lever = [hat(&first.lever), hat(&second.lever)];
         let mut first_moment = turn
@@ -265,6 +278,35 @@ impl ConnectorState {
         tangent
     }
 
+    /// Derivatives of the moment of a round straight section by the spins of the two frames.
+    ///
+    /// Source: docs/theory/dem.md, eq. (8).
+    #[inline]
+    fn round_moment_by_spins(
+        &self,
+        stiffness: &ConnectorStiffness,
+        a_hat: &Matrix3,
+        b_hat: &Matrix3,
+        outer: &Matrix3,
+    ) -> [Matrix3; 2] {
+        let [a, b] = &self.axes;
+        // By the two axes, and by the difference of rotations.
+        let one_plus_cos = 0.5 * self.sum * self.sum;
+        let (ratio, slope) = angle_over_sine(one_plus_cos - 1.0);
+        let cross = a.cross(b);
+        let along_sum = self.axis * self.sum;
+        let torque = stiffness.torsion * self.twist / one_plus_cos;
+        let by_cos = cross * (stiffness.bending * slope) - along_sum * (torque / one_plus_cos);
+        let bend = stiffness.bending * ratio;
+        let torsion = outer * (2.0 * stiffness.torsion / one_plus_cos);
+        let by_first_axis = by_cos * b.transpose() - b_hat * bend + Matrix3::identity() * torque;
+        let by_second_axis = by_cos * a.transpose() + a_hat * bend + Matrix3::identity() * torque;
+        [
+            -(by_first_axis * a_hat) - torsion,
+            -(by_second_axis * b_hat) + torsion,
+        ]
+    }
+
     /// Adds the derivatives of the damping stress. `axis_by`: of the mean axis by the rotations.
     fn add_damping(
         &self,
@@ -281,12 +323,10 @@ impl ConnectorState {
         let along = stiffness.axial - stiffness.shear;
         let twist = stiffness.torsion - stiffness.bending;
         let by_rate = Matrix3::identity() * stiffness.shear + outer * along;
-        let by_bend = Matrix3::identity() * stiffness.bending + outer * twist;
         let by_axis = |v: &Vector3, factor: f64| {
             (Matrix3::identity() * m.dot(v) + m * v.transpose()) * factor
         };
         let force_by_axis = by_axis(&self.gap_rate, along);
-        let moment_by_axis = by_axis(&self.bend_rate, twist);
 
         let lever = [hat(&first.lever), hat(&second.lever)];
         let gap_hat = hat(&self.gap);
@@ -305,11 +345,30 @@ impl ConnectorState {
             first_rotation: (by_rate * rate_first + force_by_axis * axis_by[0]) * tau,
             second_rotation: (by_rate * rate_second + force_by_axis * axis_by[1]) * tau,
         };
+        // The moment by rates of rotation, and by the rotations that turn this matrix.
+        let (by_bend, turned) = match &stiffness.general {
+            None => {
+                let moment_by_axis = by_axis(&self.bend_rate, twist);
+                (
+                    Matrix3::identity() * stiffness.bending + outer * twist,
+                    [
+                        moment_by_axis * axis_by[0] * tau,
+                        moment_by_axis * axis_by[1] * tau,
+                    ],
+                )
+            }
+            Some(law) => {
+                let each = stiffness.turned_stiffness(law, [first, second]);
+                let d = &self.bend_rate;
+                let turned = each.map(|own| (own * hat(d) - hat(&(own * d))) * (0.5 * tau));
+                ((each[0] + each[1]) * 0.5, turned)
+            }
+        };
         let spin = by_bend * (v * tau);
         let moment = Sensitivity {
             translation: Matrix3::zeros(),
-            first_rotation: moment_by_axis * axis_by[0] * tau - spin * rates.rotation[0],
-            second_rotation: moment_by_axis * axis_by[1] * tau + spin * rates.rotation[1],
+            first_rotation: turned[0] - spin * rates.rotation[0],
+            second_rotation: turned[1] + spin * rates.rotation[1],
         };
         let force_hat = hat(&self.damping.force);
         let mut couple = force.led_by(&gap_hat);
@@ -354,8 +413,16 @@ impl ConnectorState {
 
     /// Elastic energy [J].
     ///
-    /// Source: docs/theory/dem.md, eq. (5).
-    pub fn energy(&self, stiffness: &ConnectorStiffness) -> f64 {
+    /// Source: docs/theory/dem.md, eq. (5); docs/theory/sections.md, eq. (5).
+    pub fn energy(&self, stiffness: &ConnectorStiffness, first: &Side, second: &Side) -> f64 {
+        if let Some(law) = &stiffness.general {
+            let twist = self.twist - law.rest_twist;
+            let bend = Bend::new(first, second, self.twist).change(law);
+            return 0.5 * stiffness.shear * self.across.norm_squared()
+                + stiffness.axial_energy(self.axis.dot(&self.gap))
+                + law.bending.at(bend).energy
+                + 0.5 * stiffness.torsion * twist * twist;
+        }
         let angle = self.axes[0]
             .cross(&self.axes[1])
             .norm()

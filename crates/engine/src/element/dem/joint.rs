@@ -81,6 +81,8 @@ impl DotLaw {
 pub struct JointStiffness {
     /// Stiffness of the half element; only its axial and shear parts are used.
     pub half: ConnectorStiffness,
+    /// 1 where the element's axis points to the support (end B), -1 at end A.
+    pub forward: f64,
     /// Springs of the held rotations.
     pub springs: Vec<DotSpring>,
 }
@@ -105,6 +107,26 @@ fn axial(half: &ConnectorStiffness, axis: &Vector3, gap: &Vector3) -> Vector3 {
     gap * half.shear + axis * ((half.axial - half.shear) * axis.dot(gap))
 }
 
+impl JointStiffness {
+    /// Force of the half element at a gap; its axial part may follow a law given by points.
+    #[inline]
+    fn elastic(&self, axis: &Vector3, gap: &Vector3) -> Vector3 {
+        if self.half.general.is_none() {
+            return axial(&self.half, axis, gap);
+        }
+        let extension = axis.dot(gap);
+        let (tension, _) = self.half.tension(self.forward * extension);
+        gap * self.half.shear + axis * (self.forward * tension - self.half.shear * extension)
+    }
+
+    /// Energy of the half element at a gap, along `axis` (unit) [J].
+    fn energy(&self, axis: &Vector3, gap: &Vector3) -> f64 {
+        let extension = axis.dot(gap);
+        0.5 * self.half.shear * (gap.norm_squared() - extension * extension)
+            + self.half.axial_energy(self.forward * extension)
+    }
+}
+
 impl JointState {
     /// Measures the joint. `support` comes first, `element` second.
     pub fn new(joint: &JointStiffness, support: &Side, element: &Side) -> JointState {
@@ -115,7 +137,7 @@ impl JointState {
         let tau = joint.half.damping;
         let mut state = JointState {
             gap,
-            elastic: axial(&joint.half, &axis, &gap),
+            elastic: joint.elastic(&axis, &gap),
             damping: axial(&joint.half, &axis, &gap_rate) * tau,
             moment: Vector3::zeros(),
             gap_rate,
@@ -161,8 +183,10 @@ impl JointState {
         let axis: Vector3 = element.rotation.column(0).into();
         let half = &joint.half;
         let along = half.axial - half.shear;
-        let elastic = prediction.map_or(self.elastic, |p| p.force(half, &axis));
-        let matrix = Matrix3::identity() * half.shear + axis * axis.transpose() * along;
+        let elastic = prediction.map_or(self.elastic, |p| p.force(half, &axis, joint.forward));
+        let (_, slope) = half.tension(joint.forward * axis.dot(&self.gap));
+        let outer = axis * axis.transpose();
+        let matrix = Matrix3::identity() * half.shear + outer * (slope - half.shear);
         let lever = [hat(&support.lever), hat(&element.lever)];
         let gap_hat = hat(&self.gap);
         // The gap moves with the support (first) and against the element (second).
@@ -187,7 +211,8 @@ impl JointState {
                 second_rotation: (lever[1] + gap_hat) * rates.rotation[1] * v,
             };
             let turn = (Matrix3::identity() * axis.dot(q) + axis * q.transpose()) * along;
-            let mut damping = rate.led_by(&matrix);
+            let damping_matrix = Matrix3::identity() * half.shear + outer * along;
+            let mut damping = rate.led_by(&damping_matrix);
             damping.second_rotation -= turn * hat(&axis);
             force = force.plus(&damping.scaled(tau));
             total += self.damping;
@@ -263,8 +288,12 @@ impl JointState {
     }
 
     /// Elastic energy [J].
-    pub fn energy(&self) -> f64 {
-        0.5 * self.elastic.dot(&self.gap) + self.spring_energy
+    pub fn energy(&self, joint: &JointStiffness, element: &Side) -> f64 {
+        if joint.half.general.is_none() {
+            return 0.5 * self.elastic.dot(&self.gap) + self.spring_energy;
+        }
+        let axis: Vector3 = element.rotation.column(0).into();
+        joint.energy(&axis, &self.gap) + self.spring_energy
     }
 
     /// Power of the damping, negative [W].

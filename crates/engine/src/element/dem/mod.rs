@@ -1,8 +1,11 @@
 //! The discrete element method: rigid elements that carry all inertia, joined by massless
 //! connectors that carry all stiffness.
 
+mod bend;
 pub mod connector;
+mod curve;
 pub mod joint;
+mod law;
 pub mod pair;
 pub mod stiffness;
 

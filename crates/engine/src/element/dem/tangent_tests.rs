@@ -3,7 +3,9 @@
 use catenix_numerics::{Matrix3, Vector3, Vector6, so3};
 
 use super::connector::ConnectorState;
+use super::curve::Curve;
 use super::joint::{DotLaw, DotSpring, JointState, JointStiffness};
+use super::law::{BendLaw, GeneralLaw};
 use super::pair::{PairForces, PairTangent, RateWeights, Sensitivity, Side};
 use super::stiffness::ConnectorStiffness;
 
@@ -41,6 +43,26 @@ impl Frame {
     }
 }
 
+/// Pairs of frames: one as systems have them, and some far out.
+fn pairs() -> Vec<[Frame; 2]> {
+    let mut pairs = vec![frames()];
+    for (turn, gap) in [
+        (Vector3::new(-1.4, 0.9, -1.1), Vector3::new(0.3, 0.2, -0.4)),
+        (Vector3::new(1.9, 0.3, 0.2), Vector3::new(-0.5, 0.1, 0.2)),
+        (Vector3::new(0.1, -1.2, 1.7), Vector3::new(0.1, -0.6, 0.3)),
+        (
+            Vector3::new(0.02, 0.01, -0.03),
+            Vector3::new(0.01, 0.0, 0.0),
+        ),
+    ] {
+        let [first, mut second] = frames();
+        second.rotation = so3::exp(&turn) * first.rotation;
+        second.position = first.side().point + gap - second.rotation * second.lever;
+        pairs.push([first, second]);
+    }
+    pairs
+}
+
 fn frames() -> [Frame; 2] {
     let first = Frame {
         position: Vector3::new(0.3, -0.2, 1.0),
@@ -70,12 +92,59 @@ fn stiffness() -> ConnectorStiffness {
         bending: 110.0,
         shift: 0.0,
         damping: 0.05,
+        general: None,
     }
 }
 
-fn joint() -> JointStiffness {
+/// The plain connector, and one of every general kind.
+fn stiffnesses() -> Vec<ConnectorStiffness> {
+    let radial = Curve::through(&[[0.0, 0.0], [0.15, 20.0], [0.5, 25.0], [0.9, 90.0]], 1.0);
+    let points = [
+        [-0.5, -300.0],
+        [0.0, 0.0],
+        [0.01, 50.0],
+        [0.4, 900.0],
+        [0.5, 950.0],
+    ];
+    let general = |bending, axial| {
+        let law = GeneralLaw {
+            rest_bend: [0.2, -0.3],
+            rest_twist: 0.4,
+            bending,
+            initial_bending: [60.0, 160.0],
+            axial,
+        };
+        ConnectorStiffness {
+            general: Some(Box::new(law)),
+            ..stiffness()
+        }
+    };
+    vec![
+        stiffness(),
+        general(BendLaw::Planes([60.0, 160.0]), None),
+        general(
+            BendLaw::Radial(radial.clone()),
+            Some(Curve::through(&points, 1.0)),
+        ),
+        general(
+            BendLaw::Mixed {
+                radial,
+                compliance: [0.004, 0.012],
+            },
+            None,
+        ),
+    ]
+}
+
+fn joints() -> Vec<JointStiffness> {
+    let joint = |half| [-1.0, 1.0].map(|forward| joint(half, forward));
+    stiffnesses().iter().flat_map(joint).collect()
+}
+
+fn joint(half: &ConnectorStiffness, forward: f64) -> JointStiffness {
     JointStiffness {
-        half: stiffness(),
+        half: half.clone(),
+        forward,
         springs: vec![
             DotSpring {
                 support_axis: Vector3::y(),
@@ -121,7 +190,16 @@ fn check_tangent(
     evaluate: impl Fn(&Side, &Side) -> PairForces,
     tangent: impl Fn(&Side, &Side, &RateWeights) -> PairTangent,
 ) {
-    let frames = frames();
+    for frames in pairs() {
+        check_tangent_at(&frames, &evaluate, &tangent);
+    }
+}
+
+fn check_tangent_at(
+    frames: &[Frame; 2],
+    evaluate: impl Fn(&Side, &Side) -> PairForces,
+    tangent: impl Fn(&Side, &Side, &RateWeights) -> PairTangent,
+) {
     let rates = RateWeights {
         velocity: 3.0,
         rotation: [
@@ -159,26 +237,28 @@ fn check_tangent(
 
 #[test]
 fn connector_tangent_matches_finite_differences() {
-    let stiffness = stiffness();
-    check_tangent(
-        |a, b| ConnectorState::new(&stiffness, a, b).forces(a, b),
-        |a, b, rates| {
-            let state = ConnectorState::new(&stiffness, a, b);
-            state.tangent(&stiffness, a, b, None, rates)
-        },
-    );
+    for stiffness in stiffnesses() {
+        check_tangent(
+            |a, b| ConnectorState::new(&stiffness, a, b).forces(a, b),
+            |a, b, rates| {
+                let state = ConnectorState::new(&stiffness, a, b);
+                state.tangent(&stiffness, a, b, None, rates)
+            },
+        );
+    }
 }
 
 #[test]
 fn joint_tangent_matches_finite_differences() {
-    let joint = joint();
-    check_tangent(
-        |a, b| JointState::new(&joint, a, b).forces(a, b),
-        |a, b, rates| {
-            let state = JointState::new(&joint, a, b);
-            state.tangent(&joint, a, b, None, rates)
-        },
-    );
+    for joint in joints() {
+        check_tangent(
+            |a, b| JointState::new(&joint, a, b).forces(a, b),
+            |a, b, rates| {
+                let state = JointState::new(&joint, a, b);
+                state.tangent(&joint, a, b, None, rates)
+            },
+        );
+    }
 }
 
 /// Elastic forces are the gradient of the energy.
@@ -186,7 +266,17 @@ fn check_gradient(
     energy: impl Fn(&Side, &Side) -> f64,
     forces: impl Fn(&Side, &Side) -> PairForces,
 ) {
-    let still = frames().map(|frame| Frame {
+    for pair in pairs() {
+        check_gradient_at(pair, &energy, &forces);
+    }
+}
+
+fn check_gradient_at(
+    pair: [Frame; 2],
+    energy: impl Fn(&Side, &Side) -> f64,
+    forces: impl Fn(&Side, &Side) -> PairForces,
+) {
+    let still = pair.map(|frame| Frame {
         velocity: Vector3::zeros(),
         spin: Vector3::zeros(),
         ..frame
@@ -210,21 +300,28 @@ fn check_gradient(
 
 #[test]
 fn elastic_forces_are_the_gradient_of_the_energy() {
-    let stiffness = stiffness();
-    check_gradient(
-        |a, b| ConnectorState::new(&stiffness, a, b).energy(&stiffness),
-        |a, b| ConnectorState::new(&stiffness, a, b).forces(a, b),
-    );
-    let joint = joint();
-    check_gradient(
-        |a, b| JointState::new(&joint, a, b).energy(),
-        |a, b| JointState::new(&joint, a, b).forces(a, b),
-    );
+    for stiffness in stiffnesses() {
+        check_gradient(
+            |a, b| ConnectorState::new(&stiffness, a, b).energy(&stiffness, a, b),
+            |a, b| ConnectorState::new(&stiffness, a, b).forces(a, b),
+        );
+    }
+    for joint in joints() {
+        check_gradient(
+            |a, b| JointState::new(&joint, a, b).energy(&joint, b),
+            |a, b| JointState::new(&joint, a, b).forces(a, b),
+        );
+    }
 }
 
 #[test]
 fn forces_turn_with_the_system_and_keep_momentum() {
-    let [first, second] = frames();
+    for pair in pairs() {
+        check_objectivity(pair);
+    }
+}
+
+fn check_objectivity([first, second]: [Frame; 2]) {
     let turn = so3::exp(&Vector3::new(2.0, -1.0, 0.7));
     let turned = |frame: &Frame| Frame {
         position: turn * frame.position,
@@ -235,9 +332,15 @@ fn forces_turn_with_the_system_and_keep_momentum() {
     };
     let evaluate = |a: &Frame, b: &Frame| {
         let (a, b) = (a.side(), b.side());
-        let beam = ConnectorState::new(&stiffness(), &a, &b).forces(&a, &b);
-        let joint = JointState::new(&joint(), &a, &b).forces(&a, &b);
-        [beam, joint]
+        let beams = stiffnesses();
+        let beams = beams
+            .iter()
+            .map(|s| ConnectorState::new(s, &a, &b).forces(&a, &b));
+        let joints = joints();
+        let joints = joints
+            .iter()
+            .map(|joint| JointState::new(joint, &a, &b).forces(&a, &b));
+        beams.chain(joints).collect::<Vec<_>>()
     };
     let before = evaluate(&first, &second);
     let after = evaluate(&turned(&first), &turned(&second));
@@ -271,10 +374,49 @@ fn rigid_motion_meets_no_damping_and_damping_takes_energy() {
         frame.spin = spin;
         frame.velocity = spin.cross(&frame.position);
     }
-    let state = ConnectorState::new(&stiffness(), &first.side(), &second.side());
-    assert!(state.damping.force.norm() < 1e-12 && state.damping.moment.norm() < 1e-12);
+    for stiffness in stiffnesses() {
+        let state = ConnectorState::new(&stiffness, &first.side(), &second.side());
+        assert!(state.damping.force.norm() < 1e-12 && state.damping.moment.norm() < 1e-12);
+    }
     let [first, second] = frames();
     let (a, b) = (first.side(), second.side());
-    assert!(ConnectorState::new(&stiffness(), &a, &b).damping_power() < 0.0);
-    assert!(JointState::new(&joint(), &a, &b).damping_power() < 0.0);
+    for stiffness in stiffnesses() {
+        assert!(ConnectorState::new(&stiffness, &a, &b).damping_power() < 0.0);
+    }
+    for joint in joints() {
+        assert!(JointState::new(&joint, &a, &b).damping_power() < 0.0);
+    }
+}
+
+#[test]
+fn a_connector_at_rest_carries_no_moment() {
+    for stiffness in stiffnesses() {
+        let [first, mut second] = frames();
+        second.rotation = first.rotation * stiffness.rest_rotation();
+        let state = ConnectorState::new(&stiffness, &first.side(), &second.side());
+        assert!(state.elastic.moment.norm() < 1e-13 * stiffness.bending);
+    }
+}
+
+#[test]
+fn the_general_law_of_a_round_straight_section_is_the_plain_one() {
+    let plain = stiffness();
+    let general = ConnectorStiffness {
+        general: Some(Box::new(GeneralLaw {
+            rest_bend: [0.0; 2],
+            rest_twist: 0.0,
+            bending: BendLaw::Planes([plain.bending; 2]),
+            initial_bending: [plain.bending; 2],
+            axial: Some(Curve::line(plain.axial)),
+        })),
+        ..plain.clone()
+    };
+    for [first, second] in pairs() {
+        let (a, b) = (first.side(), second.side());
+        let [x, y] = [&plain, &general].map(|s| ConnectorState::new(s, &a, &b));
+        assert!((x.elastic.moment - y.elastic.moment).norm() < 1e-12 * x.elastic.moment.norm());
+        assert!((x.elastic.force - y.elastic.force).norm() < 1e-12 * x.elastic.force.norm());
+        let energies = [x.energy(&plain, &a, &b), y.energy(&general, &a, &b)];
+        assert!((energies[0] - energies[1]).abs() < 1e-12 * energies[0]);
+    }
 }

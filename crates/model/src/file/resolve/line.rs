@@ -8,8 +8,10 @@ use crate::file::log::Log;
 use crate::file::node::Span;
 use crate::file::quantity::{NonNegative, Real};
 use crate::file::read::{NamedItem, Vector};
-use crate::file::tables::{AttachmentTable, ConnectionTable, EndTable, JointChoice, LineTable};
-use crate::{Attachment, EndConnection, Environment, Joint, Line, LineEnd, Section};
+use crate::file::tables::{
+    AttachmentTable, ConnectionTable, EndTable, JointChoice, LineTable, SectionTable,
+};
+use crate::{Attachment, EndConnection, Environment, Joint, Line, LineEnd, NaturalShape, Section};
 
 use super::grading::element_lengths;
 use super::names::Names;
@@ -53,9 +55,22 @@ pub(super) fn resolve(
         stretched_length += section.length.si * (1.0 + limit);
         written_length += section.length.si;
         if let (Some(line_type), Some(element_lengths)) = (line_type, element_lengths) {
+            let natural = natural_shape(section, &element_lengths, log);
+            let stiffness = line_types
+                .get(line_type)
+                .and_then(|slot| Some(slot.item.as_ref()?.line_type.bending_stiffness));
+            if natural.curvature != [0.0; 2] && stiffness == Some([0.0; 2]) {
+                let message = format!(
+                    "`{}` has no bending stiffness and cannot have a natural curvature",
+                    section.r#type.value
+                );
+                let help = "give the line type a bending stiffness, or remove the curvature";
+                log.error(Code::ConflictingKeys, &section.r#type.span, message, help);
+            }
             sections.push(Section {
                 line_type,
                 element_lengths,
+                natural,
             });
         }
     }
@@ -119,6 +134,36 @@ fn start_shape(table: &LineTable, log: &mut Log) -> Option<Vec<[f64; 3]>> {
         before = after;
     }
     Some(points.iter().map(place).collect())
+}
+
+/// Largest natural bend or twist of one element [rad]: with more, neighbours would be half a turn
+/// apart before any load acts.
+const MOST_NATURAL_TURN: f64 = 1.0;
+
+fn natural_shape(section: &SectionTable, element_lengths: &[f64], log: &mut Log) -> NaturalShape {
+    let longest = element_lengths.iter().copied().fold(0.0, f64::max);
+    let (y, z) = (&section.natural_curvature_y, &section.natural_curvature_z);
+    let twist = &section.natural_twist;
+    let curved = if y.si == 0.0 { &z.span } else { &y.span };
+    for (what, turn, span) in [
+        ("bend", y.si.hypot(z.si), curved),
+        ("twist", twist.si.abs(), &twist.span),
+    ] {
+        if turn * longest > MOST_NATURAL_TURN {
+            let message = format!(
+                "the natural {what} of an element is {:.0} deg; at most {:.0} deg can be computed",
+                (turn * longest).to_degrees(),
+                MOST_NATURAL_TURN.to_degrees()
+            );
+            let shorter = MOST_NATURAL_TURN / turn;
+            let help = format!("use elements of {shorter:.3} m or less; 10 deg each are better");
+            log.error(Code::Value, span, message, help);
+        }
+    }
+    NaturalShape {
+        curvature: [y.si, z.si],
+        twist: twist.si,
+    }
 }
 
 fn attachment(
@@ -284,6 +329,8 @@ fn connection(table: &ConnectionTable, names: &Names, log: &mut Log) -> Option<E
         to: to?,
         point_local: [0, 1, 2].map(|i| table.at.components[i].si),
         direction_local: direction.into(),
+        axis_local: axis.into(),
+        axis_given: table.axis.is_some(),
         joint,
         slides_along: slides_along?,
     })
@@ -302,10 +349,10 @@ fn check_joint_keys(table: &ConnectionTable, log: &mut Log) {
         );
     }
     if let Some(axis) = &table.axis
-        && !matches!(table.joint, JointChoice::Universal | JointChoice::Hinge)
+        && table.joint == JointChoice::Ball
     {
-        let message = "only universal and hinge joints have an `axis`";
-        let help = "remove it, or write joint = \"hinge\" or \"universal\"";
+        let message = "a ball joint has no `axis`";
+        let help = "remove it, or write joint = \"hinge\", \"universal\" or \"fixed\"";
         log.error(Code::ConflictingKeys, &axis.span, message, help);
     }
 }

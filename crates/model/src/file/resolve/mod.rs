@@ -18,6 +18,7 @@ mod motion;
 mod names;
 mod path;
 mod references;
+mod section_law;
 
 use crate::{Body, Environment, LineType, Model, OutputSettings, Reference, Vessel};
 

@@ -2,7 +2,8 @@
 
 use crate::file::define::{choice, table};
 use crate::file::dimension::{
-    Area, Dimensionless, Force, Length, Mass, RotationalStiffness, Volume,
+    AnglePerLength, Area, Dimensionless, Force, InverseLength, Length, Mass, RotationalStiffness,
+    Volume,
 };
 use crate::file::log::Log;
 use crate::file::node::{Node, NodeValue};
@@ -49,6 +50,14 @@ table! {
         /// Growth of the element length per metre of line away from a graded end: with 0.2 an
         /// element is about 20 % longer than the one before.
         growth: Option<Positive<Dimensionless>>,
+        /// Curvature without stress about the section's local y: with a positive one the line bends
+        /// towards its local -z on its way from A to B.
+        natural_curvature_y: Real<InverseLength> = "0 m^-1",
+        /// Curvature without stress about the section's local z: with a positive one the line bends
+        /// towards its local y.
+        natural_curvature_z: Real<InverseLength> = "0 m^-1",
+        /// Twist without stress: local y turns towards local z on the way from A to B.
+        natural_twist: Real<AnglePerLength> = "0 rad/m",
     }
 }
 
@@ -87,8 +96,10 @@ table! {
         /// Bending stiffness of a ball joint (a flex joint); absent: none.
         rotational_stiffness: Option<NonNegative<RotationalStiffness>>,
         /// Axis of a hinge, or the axis of a universal joint that is fixed to what the end is
-        /// connected to; in local axes, across the direction. Absent: local y made normal to the
-        /// direction (or local x, where the direction is close to y).
+        /// connected to, or at a fixed end the direction in which it holds the section's local y;
+        /// in local axes, across the direction. Absent: local y made normal to the direction (or
+        /// local x, where the direction is close to y); an absent axis at a fixed end B follows
+        /// end A, so that the line is not twisted.
         axis: Option<Vector<Real<Dimensionless>>>,
         /// Direction along which the joint's point slides without resistance, in the local axes of
         /// what the end is connected to: a roller, slip joint or guide. Absent: it does not slide.

@@ -19,7 +19,7 @@ pub(super) use environment::{
 pub(super) use line::{
     AttachmentTable, ConnectionTable, EndTable, JointChoice, LineTable, SectionTable,
 };
-pub(super) use line_type::{GeneralTable, LineTypeTable, PipeTable};
+pub(super) use line_type::{GeneralTable, LineTypeTable, PipeTable, RectangleTable};
 pub(super) use load::{LoadHarmonicTable, LoadTable};
 pub(super) use motion::{DegreeChoice, HarmonicTable, LegTable, MotionTable, TowTable};
 pub(super) use output::{FigureTable, OutputTable, ReferenceTable, StatisticChoice};

@@ -1,0 +1,164 @@
+//! Lines whose sections have directions: which way local y points, and the stress-free shape.
+//!
+//! Source: docs/theory/sections.md, eqs. (4) and (14).
+
+use catenix_model::{EndConnection, Joint, Line, LineEnd, Model};
+use catenix_numerics::{Matrix3, Vector3, so3};
+
+use super::LineLayout;
+use super::shape::Supports;
+use crate::element::dem::stiffness::ConnectorStiffness;
+
+/// Whether it matters how the sections of a line are turned about its axis.
+pub(super) fn has_directions(model: &Model, line: &Line) -> bool {
+    line.sections.iter().any(|section| {
+        let [y, z] = model.line_types[section.line_type].bending_stiffness;
+        y != z || !section.natural.is_straight()
+    }) || line.ends.iter().any(|end| {
+        matches!(end, LineEnd::Connected(connection)
+            if connection.joint == Joint::Fixed && connection.axis_given)
+    })
+}
+
+/// Whether the line is bent where no stress acts.
+pub(super) fn is_curved(line: &Line) -> bool {
+    let curved = |curvature: [f64; 2]| curvature != [0.0; 2];
+    line.sections.iter().any(|s| curved(s.natural.curvature))
+}
+
+/// The end whose connection says where local y points: one that says so itself, else a connected
+/// one; end A before end B.
+pub(super) fn reference_end(line: &Line) -> usize {
+    let connection = |end: usize| match &line.ends[end] {
+        LineEnd::Connected(connection) => Some(connection),
+        LineEnd::Free => None,
+    };
+    let says = |end: usize| {
+        connection(end).is_some_and(|connection| match connection.joint {
+            Joint::Universal { .. } | Joint::Hinge { .. } => true,
+            Joint::Fixed => connection.axis_given,
+            Joint::Ball { .. } => false,
+        })
+    };
+    let order = [0, 1];
+    order
+        .into_iter()
+        .find(|&end| says(end))
+        .or_else(|| order.into_iter().find(|&end| connection(end).is_some()))
+        .unwrap_or(0)
+}
+
+/// Local axes that a connection gives the sections at an end, in the axes of the support.
+pub(super) fn connection_axes(connection: &EndConnection) -> Matrix3 {
+    so3::frame_from_direction(
+        &Vector3::from(connection.direction_local),
+        &Vector3::from(connection.axis_local),
+    )
+}
+
+/// Local axes of the sections at the end of a line, from those of its outermost element, as they
+/// are without stress.
+pub(super) fn end_axes(half: &ConnectorStiffness, end: usize, element: &Matrix3) -> Matrix3 {
+    let rest = half.rest_rotation();
+    if end == 0 {
+        element * rest.transpose()
+    } else {
+        element * rest
+    }
+}
+
+/// Where a connected end points the sections: its global axes, with x along `tangent`.
+fn wanted_axes(line: &Line, end: usize, tangent: &Vector3, supports: &Supports) -> Matrix3 {
+    let LineEnd::Connected(connection) = &line.ends[end] else {
+        return so3::frame_from_direction(tangent, &so3::any_normal(tangent));
+    };
+    let axes = supports.get(connection.to).rotation * connection_axes(connection);
+    let direction: Vector3 = axes.column(0).into();
+    so3::shortest_arc(&direction, tangent) * axes
+}
+
+/// Rotations of the elements of a line with known tangents (n_elements): carried along with the
+/// natural twist only, turned to agree with the end that says where local y points.
+pub(super) fn rotations_along(
+    model: &Model,
+    line: &Line,
+    layout: &LineLayout,
+    tangents: &[Vector3],
+    supports: &Supports,
+) -> Vec<Matrix3> {
+    let mut rotations: Vec<Matrix3> = Vec::with_capacity(tangents.len());
+    for (k, tangent) in tangents.iter().enumerate() {
+        rotations.push(match rotations.last() {
+            None => so3::frame_from_direction(tangent, &so3::any_normal(tangent)),
+            Some(before) => {
+                let along: Vector3 = before.column(0).into();
+                let twist = layout.stiffness(model, k).rest_twist();
+                so3::shortest_arc(&along, tangent) * before * about_x(twist)
+            }
+        });
+    }
+    let end = reference_end(line);
+    let (node, element) = if end == 0 {
+        (0, 0)
+    } else {
+        (layout.element_count, layout.element_count - 1)
+    };
+    let own = end_axes(&layout.stiffness(model, node), end, &rotations[element]);
+    let wanted = wanted_axes(line, end, &own.column(0).into(), supports);
+    let y = own.transpose() * wanted.column(1);
+    let roll = about_x(y.z.atan2(y.y));
+    for rotation in &mut rotations {
+        *rotation *= roll;
+    }
+    rotations
+}
+
+/// Positions and rotations of the elements of a line in its stress-free shape, which starts at the
+/// point and in the direction in which end `held` is held.
+pub(super) fn stress_free(
+    model: &Model,
+    line: &Line,
+    layout: &LineLayout,
+    held: usize,
+    point: &Vector3,
+    direction: &Vector3,
+    supports: &Supports,
+) -> Vec<(Vector3, Matrix3)> {
+    let count = layout.element_count;
+    let clamped = matches!(&line.ends[held], LineEnd::Connected(connection)
+        if connection.joint == Joint::Fixed);
+    let mut rotation = wanted_axes(line, held, direction, supports);
+    // The connectors' points, from the held end on.
+    let forward = if held == 0 { 1.0 } else { -1.0 };
+    let mut point = *point;
+    let mut elements = Vec::with_capacity(count);
+    for step in 0..count {
+        let (node, element) = if held == 0 {
+            (step, step)
+        } else {
+            (count - step, count - 1 - step)
+        };
+        let stiffness = layout.stiffness(model, node);
+        let shift = if step == 0 && !clamped {
+            0.0
+        } else {
+            stiffness.shift
+        };
+        point += rotation.column(0) * shift;
+        let rest = stiffness.rest_rotation();
+        rotation *= if held == 0 { rest } else { rest.transpose() };
+        let axis: Vector3 = rotation.column(0).into();
+        point -= axis * shift;
+        let half = axis * (0.5 * forward * layout.length(element));
+        elements.push((point + half, rotation));
+        point += half * 2.0;
+    }
+    if held == 1 {
+        elements.reverse();
+    }
+    elements
+}
+
+fn about_x(angle: f64) -> Matrix3 {
+    so3::exp(&Vector3::new(angle, 0.0, 0.0))
+}
