@@ -504,3 +504,42 @@ fn a_ring_that_is_unrolled_bears_the_moment_of_its_curvature() {
         1e-5 * moment,
     );
 }
+
+#[test]
+fn an_end_moment_bends_a_straight_beam_to_a_full_circle() {
+    // M = 2 pi EI / L closes the beam: every section turns by 2 pi s / L, and the end comes back.
+    let (length, bending) = (10.0, 1e4);
+    let errors = [20, 40, 80].map(|elements| {
+        let beam = Beam {
+            line_type: general(&format!(
+                "axial_stiffness = 1e7\nbending_stiffness = {bending}"
+            )),
+            fluid: GENERAL_FLUID,
+            length,
+            elements,
+            natural: String::new(),
+            tip_weight: 0.0,
+            clamp: "direction = [1, 0, 0]".into(),
+        };
+        let load = format!(
+            "[loads.end]\non = \"beam\"\nat = {length:?}\nmoment = [0, {:?}, 0]",
+            -2.0 * PI * bending / length
+        );
+        let statics = statics(&model(&(beam.text() + &load)));
+        let fields = &statics.fields[0];
+        let moment = 2.0 * PI * bending / length;
+        for found in &fields.get(LineQuantity::BendMoment)[..elements] {
+            // The wall lies 100 m deep: round-off in positions leaves 1e-3 N, over 10 m.
+            assert_near("moment", *found, moment, 1e-5 * moment);
+        }
+        // A quarter of the way the beam is a radius from the wall along x and z.
+        let radius = length / (2.0 * PI);
+        let quarter = distance(fields.position(elements / 4), [radius, 0.0, radius - 100.0]);
+        let closed = distance(fields.position(elements), [0.0, 0.0, -100.0]);
+        quarter.max(closed)
+    });
+    assert!(
+        orders(&errors).iter().all(|&order| order > 1.9),
+        "{errors:?}"
+    );
+}
