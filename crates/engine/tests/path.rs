@@ -6,63 +6,10 @@
 mod common;
 
 use std::f64::consts::PI;
-use std::ops::ControlFlow;
 
-use catenix_engine::{PathEnd, PathError, PathEvent, PathPoint, PathReport, System, follow_path};
-use catenix_model::all_channels;
-use common::{assert_near, model};
-
-/// A path, read out.
-struct Found {
-    points: Vec<PathPoint>,
-    /// Per point, by the channels' order.
-    values: Vec<Vec<f64>>,
-    names: Vec<String>,
-    report: Result<PathReport, PathError>,
-}
-
-impl Found {
-    fn channel(&self, name: &str) -> Vec<f64> {
-        let index = self.names.iter().position(|found| found == name);
-        let index = index.unwrap_or_else(|| panic!("no channel {name} in {:?}", self.names));
-        self.values.iter().map(|values| values[index]).collect()
-    }
-
-    /// Value of a channel at the first point with this factor.
-    fn at(&self, factor: f64, name: &str) -> f64 {
-        let point = self
-            .points
-            .iter()
-            .position(|point| (point.factor - factor).abs() < 1e-12 * (1.0 + factor.abs()))
-            .unwrap_or_else(|| panic!("no point at the factor {factor}"));
-        self.channel(name)[point]
-    }
-}
-
-fn follow(text: &str) -> Found {
-    let model = model(text);
-    let system = System::new(&model).unwrap();
-    let channels = all_channels(&model);
-    let mut points = Vec::new();
-    let mut values = Vec::new();
-    let report = follow_path(
-        &system,
-        &mut |_| ControlFlow::Continue(()),
-        &mut |point, view| {
-            points.push(*point);
-            let read = channels.iter().map(|channel| view.channel(channel.target));
-            values.push(read.collect());
-            ControlFlow::Continue(())
-        },
-    );
-    let names = channels.into_iter().map(|channel| channel.name).collect();
-    Found {
-        points,
-        values,
-        names,
-        report,
-    }
-}
+use catenix_engine::{PathEnd, PathError, PathEvent};
+use common::assert_near;
+use common::path::follow;
 
 /// Complete elliptic integrals K and E of the modulus k, by the arithmetic-geometric mean.
 /// Source: Abramowitz and Stegun, 17.6.
@@ -344,102 +291,6 @@ fn a_pinned_column_on_a_slide_buckles_at_its_euler_load() {
         0.0,
         1e-6 * euler,
     );
-}
-
-/// Distance of the loaded points of a ring of radius 1 and EI = 1 that is pulled apart by `load`:
-/// an inextensible elastica. On a quarter, from the load, theta'' = -(P / 2) cos(theta), theta = 0 at
-/// the load and pi / 2 at the side; by shooting on the curvature at the load. A ring that was bent
-/// from a straight rod does the same in its plane: the turn of the closed ring is fixed, so its
-/// natural curvature drops out of the energy.
-fn ring_height(load: f64) -> f64 {
-    let shoot = |curvature: f64| {
-        let n = 2000;
-        let h = 0.5 * PI / n as f64;
-        let rate = |s: [f64; 3]| [s[1], -0.5 * load * s[0].cos(), s[0].sin()];
-        let moved = |s: [f64; 3], k: [f64; 3], h: f64| [0, 1, 2].map(|i| s[i] + h * k[i]);
-        let mut state = [0.0, curvature, 0.0];
-        for _ in 0..n {
-            let k1 = rate(state);
-            let k2 = rate(moved(state, k1, 0.5 * h));
-            let k3 = rate(moved(state, k2, 0.5 * h));
-            let k4 = rate(moved(state, k3, h));
-            let mean = [0, 1, 2].map(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0);
-            state = moved(state, mean, h);
-        }
-        state
-    };
-    let (mut low, mut high) = (-5.0, 10.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if shoot(middle)[0] < 0.5 * PI {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    2.0 * shoot(low)[2]
-}
-
-#[test]
-fn val_elastica_a_ring_is_pulled_and_pinched() {
-    // Linear theory for a small load: (pi / 4 - 2 / pi) P R^3 / EI.
-    let small = (ring_height(1e-3) - 2.0) / 1e-3;
-    assert_near("small load", small, 0.25 * PI - 2.0 / PI, 1e-4);
-    let text = |elements: usize, range: &str, at: &str| {
-        let points: Vec<String> = (0..=elements)
-            .map(|k| {
-                let (sin, cos) = (2.0 * PI * k as f64 / elements as f64).sin_cos();
-                format!("[{sin:?}, 0, {:?}]", 1.0 - cos)
-            })
-            .collect();
-        let shape = points.join(", ");
-        let length = 2.0 * PI;
-        format!(
-            r#"
-            environment.gravity = 0
-            [line_types.strip]
-            kind = "general"
-            outer_diameter = "0.01 m"
-            mass = "1 kg/m"
-            axial_stiffness = 1e5
-            bending_stiffness = 1
-            [anchors.below]
-            position = [0, 0, 0]
-            [lines.ring]
-            sections = [{{ type = "strip", length = {length:?}, elements = {elements} }}]
-            start_shape = [{shape}]
-            end_a = {{ to = "below", joint = "fixed", direction = [1, 0, 0] }}
-            end_b = {{ to = "below", joint = "fixed", direction = [1, 0, 0] }}
-            [loads.pull]
-            on = "ring"
-            at = {half:?}
-            force = [0, 0, 1]
-            [output]
-            channels = ["ring.z@{half:?}m", "ring.x@{half:?}m"]
-            [path]
-            range = {range}
-            at = {at}
-            "#,
-            half = PI,
-        )
-    };
-    for (range, loads) in [("[0, 8]", [1.0, 4.0, 8.0]), ("[-4, 0]", [-1.0, -2.5, -4.0])] {
-        let errors = |elements: usize| {
-            let found = follow(&text(elements, range, &format!("{loads:?}")));
-            assert!(found.report.is_ok(), "{:?}", found.report);
-            let name = found.names.iter().find(|name| name.starts_with("ring.z@"));
-            let name = name.unwrap().clone();
-            loads.map(|load| (found.at(load, &name) - ring_height(load)).abs())
-        };
-        let (coarse, fine) = (errors(40), errors(80));
-        for (coarse, fine) in coarse.into_iter().zip(fine) {
-            // A polygon of 80 sides: second order, 8 / N^2 of the radius at the largest pinch.
-            assert!(
-                fine < 3e-3 && coarse / fine > 3.8,
-                "{coarse:.2e} to {fine:.2e}"
-            );
-        }
-    }
 }
 
 /// Two stiff bars that meet at a body above the middle of their feet: half span b, rise h.

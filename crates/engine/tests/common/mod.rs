@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "every test file uses another part of this module")]
 
+pub mod path;
+
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;
