@@ -59,6 +59,8 @@ pub(crate) struct StaticsArgs {
     pub(crate) output: OutputArgs,
     #[command(flatten)]
     pub(crate) work: WorkArgs,
+    #[command(flatten)]
+    pub(crate) accuracy: AccuracyArgs,
 }
 
 #[derive(Debug, Args)]
@@ -92,6 +94,8 @@ pub(crate) struct RunArgs {
     pub(crate) output: OutputArgs,
     #[command(flatten)]
     pub(crate) work: WorkArgs,
+    #[command(flatten)]
+    pub(crate) accuracy: AccuracyArgs,
 }
 
 #[derive(Debug, Args)]
@@ -128,4 +132,25 @@ pub(crate) struct WorkArgs {
     /// Show no progress
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct AccuracyArgs {
+    /// Choose element lengths and time step so that the estimated error of every headline result
+    /// stays below this, and print the estimates; instead of those in the model file
+    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    pub(crate) accuracy: Option<f64>,
+}
+
+/// A relative error: `1%`, `0.5 %` or `0.01`.
+fn percent(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.trim().strip_suffix('%') {
+        Some(number) => (number, 0.01),
+        None => (text, 1.0),
+    };
+    match number.trim().parse::<f64>() {
+        Ok(value) if (1e-6..=0.2).contains(&(value * unit)) => Ok(value * unit),
+        Ok(_) => Err("between 0.0001% and 20%".to_owned()),
+        Err(_) => Err("write a share such as 1% or 0.01".to_owned()),
+    }
 }

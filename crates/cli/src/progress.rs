@@ -59,6 +59,12 @@ impl Watch for CaseProgress<'_> {
         self.bar.tick();
     }
 
+    fn trial(&self, number: usize, elements: usize) {
+        self.bar
+            .set_message(format!("accuracy: trial {number} with {elements} elements"));
+        self.bar.tick();
+    }
+
     fn motion(&self, time_s: f64, duration_s: f64) {
         if !self.in_motion.replace(true) {
             self.bar

@@ -154,6 +154,30 @@ fn statics_reports_end_forces_in_balance() {
 }
 
 #[test]
+fn a_wanted_accuracy_chooses_the_mesh_and_states_the_errors() {
+    let bench = Bench::new("");
+    let (code, document) = bench.json(&["run", "model.toml", "--out", "out", "--accuracy", "5%"]);
+    assert_eq!(code, 0);
+    let chosen = &document["cases"]["one"]["discretisation"];
+    assert_eq!(chosen["reached"], true, "{chosen}");
+    let estimates = chosen["estimates"].as_array().unwrap();
+    let tension = "pipe.end_a.effective_tension, max";
+    assert!(estimates.iter().any(|e| e["result"] == tension), "{chosen}");
+    for estimate in estimates.iter().filter(|e| e["steers"] == true) {
+        let number = |key: &str| estimate[key].as_f64().unwrap();
+        let error = number("space_error") + number("time_error");
+        assert!(error <= 0.05 * number("scale"), "{estimate}");
+    }
+    // The store tells the same.
+    let (_, stored) = bench.json(&["summary", "out"]);
+    assert_eq!(stored["cases"]["one"]["discretisation"], *chosen);
+    let (code, stdout, _) = bench.run(&["statics", "model.toml", "--accuracy", "0.02"]);
+    assert_eq!(code, 0);
+    assert!(stdout.contains("Accuracy of 2.00 % asked for"), "{stdout}");
+    assert_eq!(bench.run(&["run", "model.toml", "--accuracy", "much"]).0, 2);
+}
+
+#[test]
 fn wrong_input_ends_with_the_code_that_the_help_lists() {
     let bench = Bench::new("[output]\n");
     let (code, _, stderr) = bench.run(&["check", "model.toml"]);

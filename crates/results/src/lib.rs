@@ -38,6 +38,6 @@ pub use statistics::{Extremes, RangeGraph, WindowStatistics};
 pub use store::{Provenance, ResultStore, StoredFigure};
 pub use store_reader::{Field, History, StoredCase, StoredStudy};
 pub use summary::{
-    BodySummary, CaseError, CaseSummary, Comparison, EndSummary, Extent, LineSummary, Located,
-    Status, Summary,
+    BodySummary, CaseError, CaseSummary, Comparison, Discretisation, EndSummary, ErrorEstimate,
+    Extent, LineSummary, Located, Status, Summary,
 };

@@ -1,7 +1,7 @@
 //! How a load case ended, as the adapter tells it after the solver has returned.
 
 use crate::layout;
-use crate::summary::{CaseError, CaseSummary, Status};
+use crate::summary::{CaseError, CaseSummary, Discretisation, Status};
 use crate::zarr::Attributes;
 
 /// End of a load case: status, error, and the solver's own account.
@@ -17,6 +17,8 @@ pub struct CaseOutcome {
     pub statics: Option<StaticsFacts>,
     /// The motion, when there was one.
     pub dynamics: Option<DynamicsFacts>,
+    /// Mesh, step and estimated errors, where an accuracy was asked for.
+    pub discretisation: Option<Discretisation>,
     /// Processor time of the case [s].
     pub cpu_seconds: f64,
     /// Elapsed time of the case [s].
@@ -64,6 +66,7 @@ impl CaseOutcome {
             warnings: Vec::new(),
             statics: None,
             dynamics: None,
+            discretisation: None,
             cpu_seconds: 0.0,
             wall_seconds: 0.0,
         }
@@ -74,6 +77,7 @@ impl CaseOutcome {
         let mut summary = CaseSummary::empty(description, self.status);
         summary.error = self.error.clone();
         summary.warnings = self.warnings.clone();
+        summary.discretisation = self.discretisation.clone();
         summary.cpu_seconds = finite(self.cpu_seconds);
         summary.wall_seconds = finite(self.wall_seconds);
         if let Some(statics) = &self.statics {

@@ -147,6 +147,9 @@ pub struct CaseSummary {
     pub lines: IndexMap<String, LineSummary>,
     /// Results from elsewhere beside the computed ones.
     pub references: Vec<Comparison>,
+    /// Mesh, step and estimated errors, where an accuracy was asked for.
+    #[serde(default)]
+    pub discretisation: Option<Discretisation>,
     /// Iterations of the static solution.
     pub static_iterations: Option<usize>,
     /// Largest residual force of the static solution [N].
@@ -172,6 +175,58 @@ pub struct CaseSummary {
     pub wall_seconds: Option<f64>,
     /// Simulated time over processor time [-]: what the case costs, however busy the machine is.
     pub real_time_factor: Option<f64>,
+}
+
+/// Mesh and step that were chosen for a wanted accuracy, and the errors that are left.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Discretisation {
+    /// Relative error that was asked for [-].
+    pub target: f64,
+    /// Whether every estimate meets it.
+    pub reached: bool,
+    /// Elements of all lines.
+    pub elements: usize,
+    /// Largest time step [s]; null for statics.
+    pub largest_step_s: Option<f64>,
+    /// Local error allowed per step, over the reference length [-]; null for statics.
+    pub step_error: Option<f64>,
+    /// Trial computations that the choice took.
+    pub trials: usize,
+    /// Processor time of the trials [s].
+    pub cpu_seconds: Option<f64>,
+    /// Estimated errors of the headline results.
+    pub estimates: Vec<ErrorEstimate>,
+}
+
+/// The estimated discretisation error of a headline result.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ErrorEstimate {
+    /// Channel or line quantity, and what of it: `hose.end_b.force_x, mean`.
+    pub result: String,
+    /// Unit of value, scale and errors.
+    pub unit: String,
+    /// Its value on the chosen mesh, with the chosen steps.
+    pub value: f64,
+    /// What the relative error refers to: for a force the tension there, for an offset its length.
+    pub scale: f64,
+    /// Estimated error of the mesh.
+    pub space_error: f64,
+    /// Estimated error of the time step.
+    pub time_error: f64,
+    /// Whether the target holds for it; peaks along a line are only reported with their error.
+    pub steers: bool,
+}
+
+impl ErrorEstimate {
+    /// Both errors over the scale [-].
+    pub fn relative(&self) -> f64 {
+        (self.space_error + self.time_error) / self.scale
+    }
+
+    /// Whether the target is met, or does not hold for this result.
+    pub fn meets(&self, target: f64) -> bool {
+        !self.steers || self.relative() <= target
+    }
 }
 
 /// Why a case failed.
@@ -276,6 +331,7 @@ impl CaseSummary {
             bodies: IndexMap::new(),
             lines: IndexMap::new(),
             references: Vec::new(),
+            discretisation: None,
             static_iterations: None,
             static_residual_n: None,
             steps: None,

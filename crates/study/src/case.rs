@@ -1,5 +1,6 @@
 //! Computes one load case with the engine and records it.
 
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -7,20 +8,22 @@ use catenix_engine::{
     DynamicsError, DynamicsReport, EnergyAccount, StaticSolution, StaticsError, StepView, System,
     simulate, solve_statics,
 };
-use catenix_model::{ChannelTarget, LoadCase};
+use catenix_model::{ChannelTarget, LoadCase, Model};
 use catenix_results::{
-    CaseError, CaseOutcome, CaseRecorder, CaseSummary, DynamicsFacts, Sample, StaticsFacts, Status,
-    StoreError,
+    CaseError, CaseOutcome, CaseRecorder, CaseSummary, Discretisation, DynamicsFacts, ResultStore,
+    Sample, StaticsFacts, Status, StoreError,
 };
 use cpu_time::ThreadTime;
 
+use crate::accuracy::{Wanted, refined};
 use crate::watch::Watch;
 
 /// Elapsed time between two looks of the watch.
 pub(crate) const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
 /// What ends a case early.
-enum Halt {
+#[derive(Debug, Clone)]
+pub(crate) enum Halt {
     Interrupted,
     Failed(CaseError),
 }
@@ -44,6 +47,7 @@ struct Account {
     statics: Option<StaticsFacts>,
     dynamics: Option<DynamicsFacts>,
     warnings: Vec<String>,
+    discretisation: Option<Discretisation>,
 }
 
 /// Computes a case and writes it into `recorder`.
@@ -52,11 +56,17 @@ struct Account {
 /// cannot be written.
 pub fn compute_case(
     case: &LoadCase,
-    mut recorder: CaseRecorder,
+    store: &ResultStore,
+    accuracy: Option<f64>,
     watch: &dyn Watch,
 ) -> Result<CaseSummary, StoreError> {
     let mut account = Account::begin();
-    let end = run_case(case, &mut recorder, watch, &mut account);
+    let (case, halt) = account.choose(case, accuracy, Wanted::Everything, watch);
+    let mut recorder = store.record_case(&case);
+    let end = match halt {
+        Some(halt) => Err(halt.into()),
+        None => run_case(&case, &mut recorder, watch, &mut account),
+    };
     let (status, error) = match end {
         Ok(()) => (Status::Complete, None),
         Err(Stop::Halt(Halt::Interrupted)) => (Status::Interrupted, None),
@@ -66,13 +76,17 @@ pub fn compute_case(
     recorder.finish(&account.outcome(status, error))
 }
 
-/// Finds the static equilibrium of a case.
-pub fn compute_statics(case: &LoadCase, watch: &dyn Watch) -> CaseSummary {
+/// Finds the static equilibrium of a case, on the mesh that an `accuracy` asks for if one is given.
+pub fn compute_statics(case: &LoadCase, accuracy: Option<f64>, watch: &dyn Watch) -> CaseSummary {
     let mut account = Account::begin();
-    let system = assemble(case);
+    let (case, halt) = account.choose(case, accuracy, Wanted::Statics, watch);
+    let system = match halt {
+        Some(halt) => Err(halt),
+        None => system_of(&case.model).map_err(Halt::Failed),
+    };
     let solution = match &system {
         Ok(system) => settle(system, watch, &mut account),
-        Err(error) => Err(Halt::Failed(error.clone())),
+        Err(halt) => Err(halt.clone()),
     };
     let (status, error) = match &solution {
         Ok(_) => (Status::Complete, None),
@@ -82,7 +96,7 @@ pub fn compute_statics(case: &LoadCase, watch: &dyn Watch) -> CaseSummary {
     let outcome = account.outcome(status, error);
     match solution {
         Ok(solution) => {
-            CaseSummary::of_static_state(case, &EngineSample(&solution.view()), &outcome)
+            CaseSummary::of_static_state(&case, &EngineSample(&solution.view()), &outcome)
         }
         Err(_) => outcome.summary(&case.description),
     }
@@ -94,7 +108,7 @@ fn run_case(
     watch: &dyn Watch,
     account: &mut Account,
 ) -> Result<(), Stop> {
-    let system = assemble(case).map_err(Halt::Failed)?;
+    let system = system_of(&case.model).map_err(Halt::Failed)?;
     let start = settle(&system, watch, account)?;
     recorder
         .record_static(case, &EngineSample(&start.view()))
@@ -130,13 +144,13 @@ fn run_case(
         }
         Err(error) => {
             account.dynamics = error.report().map(dynamics_facts);
-            Err(Halt::Failed(case_error(dynamics_code(&error), &error)).into())
+            Err(dynamics_halt(error).into())
         }
     }
 }
 
-fn assemble(case: &LoadCase) -> Result<System, CaseError> {
-    System::new(&case.model).map_err(|error| case_error("system::unusable", &error))
+pub(crate) fn system_of(model: &Model) -> Result<System, CaseError> {
+    System::new(model).map_err(|error| case_error("system::unusable", &error))
 }
 
 fn settle<'a>(
@@ -172,6 +186,32 @@ impl Account {
             statics: None,
             dynamics: None,
             warnings: Vec::new(),
+            discretisation: None,
+        }
+    }
+
+    /// The case with the mesh and step that `accuracy` asks for. The time that the choice takes is
+    /// kept apart from that of the case.
+    fn choose<'a>(
+        &mut self,
+        case: &'a LoadCase,
+        accuracy: Option<f64>,
+        wanted: Wanted,
+        watch: &dyn Watch,
+    ) -> (Cow<'a, LoadCase>, Option<Halt>) {
+        let Some(target) = accuracy else {
+            return (Cow::Borrowed(case), None);
+        };
+        let chosen = refined(case, target, wanted, watch);
+        let trials = self.cpu.elapsed().as_secs_f64();
+        *self = Account::begin();
+        match chosen {
+            Ok((case, mut discretisation)) => {
+                discretisation.cpu_seconds = Some(trials);
+                self.discretisation = Some(discretisation);
+                (Cow::Owned(case), None)
+            }
+            Err(halt) => (Cow::Borrowed(case), Some(halt)),
         }
     }
 
@@ -180,6 +220,7 @@ impl Account {
             status,
             error,
             warnings: self.warnings,
+            discretisation: self.discretisation,
             statics: self.statics,
             dynamics: self.dynamics,
             cpu_seconds: self.cpu.elapsed().as_secs_f64(),
@@ -221,7 +262,7 @@ pub(crate) fn flow(stop: bool) -> ControlFlow<()> {
     }
 }
 
-fn statics_halt(error: StaticsError) -> Halt {
+pub(crate) fn statics_halt(error: StaticsError) -> Halt {
     match &error {
         StaticsError::Interrupted { .. } => Halt::Interrupted,
         StaticsError::NoEquilibrium { .. } => {
@@ -230,6 +271,10 @@ fn statics_halt(error: StaticsError) -> Halt {
         StaticsError::FreeMotion { .. } => Halt::Failed(case_error("statics::free_motion", &error)),
         _ => Halt::Failed(case_error("statics::other", &error)),
     }
+}
+
+pub(crate) fn dynamics_halt(error: DynamicsError) -> Halt {
+    Halt::Failed(case_error(dynamics_code(&error), &error))
 }
 
 fn dynamics_code(error: &DynamicsError) -> &'static str {

@@ -4,6 +4,7 @@
 //! the two together, for every adapter alike: [`compute_case`], [`compute_statics`] and
 //! [`compute_path`] run one load case.
 
+mod accuracy;
 mod case;
 mod path;
 mod watch;

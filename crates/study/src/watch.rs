@@ -7,6 +7,8 @@
 pub trait Watch {
     /// The static solution is at an iteration, with this largest residual force [N].
     fn statics(&self, iteration: usize, residual_n: f64);
+    /// A trial run towards a wanted accuracy begins: its number and its elements.
+    fn trial(&self, number: usize, elements: usize);
     /// The motion is at a time [s] of its duration [s].
     fn motion(&self, time_s: f64, duration_s: f64);
     /// Whether the computation should stop at the next step; asked at every step.
@@ -16,6 +18,8 @@ pub trait Watch {
 /// Nobody looks on.
 impl Watch for () {
     fn statics(&self, _iteration: usize, _residual_n: f64) {}
+
+    fn trial(&self, _number: usize, _elements: usize) {}
 
     fn motion(&self, _time_s: f64, _duration_s: f64) {}
 

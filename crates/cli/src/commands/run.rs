@@ -39,7 +39,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, Failure> {
     let store = ResultStore::create(&directory, &study, &cases, &provenance)?;
     let interrupt = Interrupt::listen()?;
     let results = for_each_case(&cases, &args.work, &interrupt, |case, progress| {
-        compute_case(case, store.record_case(case), progress)
+        compute_case(case, &store, args.accuracy.accuracy, progress)
     });
     let results = results
         .into_iter()

@@ -15,7 +15,7 @@ pub(crate) fn statics(args: &StaticsArgs) -> Result<Exit, Failure> {
     let cases = chosen_cases(&study, &args.model)?;
     let interrupt = Interrupt::listen()?;
     let results = for_each_case(&cases, &args.work, &interrupt, |case, progress| {
-        compute_statics(case, progress)
+        compute_statics(case, args.accuracy.accuracy, progress)
     });
     let named = cases.iter().map(|case| case.name.clone()).zip(results);
     let summary = study_summary(&study.title, &study.note, &provenance, named);

@@ -1,6 +1,7 @@
 //! Tables for the terminal, at most 100 columns wide where the names allow it.
 
 mod check;
+mod discretisation;
 mod grid;
 mod number;
 mod path;

@@ -2,6 +2,7 @@
 
 use catenix_results::{CaseSummary, EndSummary, Summary};
 
+use super::discretisation::discretisation_text;
 use super::grid::Grid;
 use super::number::{count, fixed, maybe};
 use super::summary::errors_text;
@@ -14,6 +15,7 @@ pub(crate) fn statics_text(summary: &Summary) -> String {
     for cases in cases.chunks(CASES_PER_TABLE) {
         text.push_str(&table(cases));
         text.push('\n');
+        text.push_str(&discretisation_text(cases));
     }
     text.push_str(&errors_text(summary));
     text

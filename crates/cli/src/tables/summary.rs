@@ -7,6 +7,7 @@ use catenix_results::{
     BodySummary, CaseSummary, EndSummary, Extent, LineSummary, Located, Status, Summary,
 };
 
+use super::discretisation::discretisation_text;
 use super::grid::Grid;
 use super::number::{count, fixed, maybe};
 use super::references::references_text;
@@ -30,6 +31,7 @@ pub(crate) fn summary_text(summary: &Summary) -> String {
     for cases in cases.chunks(CASES_PER_TABLE) {
         text.push_str(&results(cases));
         text.push('\n');
+        text.push_str(&discretisation_text(cases));
     }
     text.push_str(&errors_text(summary));
     text

@@ -182,8 +182,16 @@ impl StepView<'_> {
         let pair = &self.solver.pairs[index];
         let shift = system.connectors[index].law.shift();
         let mut result = match &pair.state {
-            PairState::Beam(_) => beam_node(pair, shift),
-            PairState::Joint(_) => joint_node(pair, node == 0),
+            PairState::Beam(state) => {
+                let axis = match node {
+                    // A clamp holds the direction of the line.
+                    0 => pair.first.rotation.column(0).into(),
+                    _ if node == layout.element_count => pair.second.rotation.column(0).into(),
+                    _ => state.axis,
+                };
+                beam_node(pair, shift, &axis)
+            }
+            PairState::Joint(_) => joint_node(pair, node == 0, &self.end_axis(line, node)),
         };
         let last = layout.element_count - 1;
         let sides = [node.saturating_sub(1), node.min(last)];
@@ -260,17 +268,43 @@ impl StepView<'_> {
         let layout = &self.solver.system.lines[line];
         let at_b = node > 0;
         let frame = layout.first_frame + if at_b { node - 1 } else { 0 };
-        let axis: Vector3 = self.state.configuration.rotation[frame].column(0).into();
+        let element_axis: Vector3 = self.state.configuration.rotation[frame].column(0).into();
         let half = self.solver.system.frames[frame].length * if at_b { 0.5 } else { -0.5 };
         NodeResult {
-            position: self.state.configuration.position[frame] + axis * half,
-            axis,
+            position: self.state.configuration.position[frame] + element_axis * half,
+            axis: self.end_axis(line, node),
             curvature: {
                 let [y, z] = layout.natural[frame - layout.first_frame].curvature;
                 y.hypot(z)
             },
             ..NodeResult::default()
         }
+    }
+
+    /// Axis of a line at its very end, extrapolated from the two elements there.
+    ///
+    /// Source: docs/theory/results.md, eq. (10).
+    fn end_axis(&self, line: usize, node: usize) -> Vector3 {
+        let system = self.solver.system;
+        let layout = &system.lines[line];
+        let (end, next) = if node == 0 {
+            (0, 1)
+        } else {
+            (
+                layout.element_count - 1,
+                layout.element_count.saturating_sub(2),
+            )
+        };
+        let axis = |element: usize| -> Vector3 {
+            let frame = layout.first_frame + element;
+            self.state.configuration.rotation[frame].column(0).into()
+        };
+        if layout.element_count < 2 {
+            return axis(end);
+        }
+        let length = |element: usize| system.frames[layout.first_frame + element].length;
+        let ahead = length(end) / (length(end) + length(next));
+        (axis(end) + (axis(end) - axis(next)) * ahead).normalize()
     }
 
     fn quantities(&self, line: usize, node: usize) -> [f64; 11] {
@@ -340,19 +374,18 @@ fn split(v: &Vector3, axis: &Vector3) -> (f64, f64) {
 }
 
 /// Results at the elements' meeting point, `shift` before the point where the connector acts.
-fn beam_node(pair: &EvaluatedPair, shift: f64) -> NodeResult {
+fn beam_node(pair: &EvaluatedPair, shift: f64, axis: &Vector3) -> NodeResult {
     let PairState::Beam(state) = &pair.state else {
         return NodeResult::default();
     };
-    let axis = state.axis;
     let force = state.elastic.force + state.damping.force;
-    let arm = axis * shift;
+    let arm = state.axis * shift;
     let moment = state.elastic.moment + state.damping.moment + arm.cross(&force);
-    let (tension, shear) = split(&force, &axis);
-    let (torque, bend_moment) = split(&moment, &axis);
+    let (tension, shear) = split(&force, axis);
+    let (torque, bend_moment) = split(&moment, axis);
     NodeResult {
         position: (pair.first.point + pair.second.point) * 0.5 - arm,
-        axis,
+        axis: *axis,
         tension,
         shear,
         bend_moment,
@@ -362,17 +395,16 @@ fn beam_node(pair: &EvaluatedPair, shift: f64) -> NodeResult {
     }
 }
 
-fn joint_node(pair: &EvaluatedPair, at_a: bool) -> NodeResult {
+fn joint_node(pair: &EvaluatedPair, at_a: bool, axis: &Vector3) -> NodeResult {
     let PairState::Joint(state) = &pair.state else {
         return NodeResult::default();
     };
-    let axis: Vector3 = pair.second.rotation.column(0).into();
     // The gap points from the element's end to the support: forward at end B, backward at end A.
-    let (along, shear) = split(&(state.elastic + state.damping), &axis);
-    let (torque, bend_moment) = split(&state.moment, &axis);
+    let (along, shear) = split(&(state.elastic + state.damping), axis);
+    let (torque, bend_moment) = split(&state.moment, axis);
     NodeResult {
         position: pair.first.point,
-        axis,
+        axis: *axis,
         tension: if at_a { -along } else { along },
         shear,
         bend_moment,
