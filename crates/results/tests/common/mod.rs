@@ -225,6 +225,7 @@ pub fn outcome(status: Status, end_time_s: f64) -> CaseOutcome {
             iterations: 7,
             residual_n: 0.5,
         }),
+        discretisation: None,
         dynamics: Some(DynamicsFacts {
             end_time_s,
             steps: (end_time_s / STEP_S) as usize,
