@@ -59,6 +59,8 @@ pub(crate) trait Stage {
 pub(crate) struct Newton {
     residual: Vec<Vector6>,
     increment: Vec<Vector6>,
+    /// Iterations of the last solution; the next one is likely to take as many.
+    expected: usize,
 }
 
 impl Newton {
@@ -66,6 +68,7 @@ impl Newton {
         Newton {
             residual: vec![Vector6::zeros(); frame_count],
             increment: vec![Vector6::zeros(); frame_count],
+            expected: 0,
         }
     }
 
@@ -81,13 +84,13 @@ impl Newton {
         let mut iterations = 0;
         let mut previous = f64::INFINITY;
         loop {
-            // After the first iteration the residual alone usually shows convergence; the matrix
-            // is only built when it does not.
+            // Where convergence is likely, the residual alone is evaluated, and the matrix only when
+            // it shows none. Elsewhere both come from one evaluation.
+            let likely = iterations >= self.expected.min(UNCHECKED_ITERATIONS);
             let mut converged = false;
-            if iterations > 0 {
+            if iterations > 0 && likely {
                 let residual = self.search_line(system, time, stage, iterations, previous);
                 converged = residual <= settings.tolerance_newtons;
-                previous = residual;
             }
             if !converged {
                 stage.linearise();
@@ -103,7 +106,9 @@ impl Newton {
             if !residual.newtons.is_finite() {
                 return Err(failure);
             }
+            previous = residual.newtons;
             if residual.newtons <= settings.tolerance_newtons {
+                self.expected = iterations;
                 return Ok(NewtonOutcome {
                     iterations,
                     residual,
