@@ -7,6 +7,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod documentation;
+mod integrators;
 mod read_back;
 mod steps;
 mod tidy;
@@ -20,6 +21,7 @@ usage: cargo xtask <command>
   test                  formatting, lints, documentation, read-back check and all tests
   test --only <step>    one step of the above
   test --list           the steps and what each does
+  integrators           cost against error of the time integrators, into docs/theory/integration.md
   tidy                  only the architecture test: crate arrows, source rules, documents
 ";
 
@@ -34,6 +36,13 @@ fn main() -> ExitCode {
             steps::list();
             ExitCode::SUCCESS
         }
+        ["integrators"] => match integrators::write_table(&root) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(message) => {
+                eprintln!("{message}");
+                ExitCode::FAILURE
+            }
+        },
         ["tidy"] => report_tidy(&root),
         _ => {
             eprint!("{USAGE}");
