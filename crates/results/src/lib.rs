@@ -25,6 +25,7 @@ mod store_reader;
 mod stored_statistics;
 mod summarise;
 mod summary;
+mod verification;
 mod zarr;
 
 pub use error::StoreError;
@@ -40,4 +41,7 @@ pub use store_reader::{Field, History, StoredCase, StoredStudy};
 pub use summary::{
     BodySummary, CaseError, CaseSummary, Comparison, Discretisation, EndSummary, ErrorEstimate,
     Extent, LineSummary, Located, Status, Summary,
+};
+pub use verification::{
+    Verification, VerifiedCase, VerifiedConvergence, VerifiedCurve, VerifiedNumber,
 };
