@@ -3,6 +3,8 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+use catenix_model::ModeRange;
+use catenix_model::file::parse_band;
 use clap::{Args, Parser, Subcommand};
 
 const EXIT_CODES: &str = "\
@@ -30,6 +32,9 @@ pub(crate) enum Command {
     /// Find the static equilibrium of each load case
     #[command(after_help = EXIT_CODES)]
     Statics(StaticsArgs),
+    /// Find the natural frequencies and mode shapes about the static equilibrium
+    #[command(after_help = EXIT_CODES)]
+    Modes(ModesArgs),
     /// Follow the equilibrium path of each load case as its loads are scaled
     #[command(after_help = EXIT_CODES)]
     Path(PathArgs),
@@ -61,6 +66,29 @@ pub(crate) struct StaticsArgs {
     pub(crate) work: WorkArgs,
     #[command(flatten)]
     pub(crate) accuracy: AccuracyArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ModesArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Find this many modes, the lowest [default: as `modes` in the model file says, or 10]
+    #[arg(long, value_name = "N")]
+    pub(crate) count: Option<NonZeroUsize>,
+    /// Find all modes in a band of frequencies, such as "0.1 Hz..2 Hz"
+    #[arg(long, value_name = "FROM..TO", conflicts_with = "count", value_parser = parse_band)]
+    pub(crate) band: Option<ModeRange>,
+    /// Leave the added mass of the water out, about the same equilibrium
+    #[arg(long)]
+    pub(crate) air: bool,
+    /// Directory for results.zarr with the shapes, and figures of them; earlier results in it are
+    /// replaced [default: nothing is written]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) output: OutputArgs,
+    #[command(flatten)]
+    pub(crate) work: WorkArgs,
 }
 
 #[derive(Debug, Args)]

@@ -22,6 +22,7 @@ fn main() -> ExitCode {
     let (name, json, result) = match &line.command {
         Command::Check(args) => ("check", args.output.json, commands::check(args)),
         Command::Statics(args) => ("statics", args.output.json, commands::statics(args)),
+        Command::Modes(args) => ("modes", args.output.json, commands::modes(args)),
         Command::Path(args) => ("path", args.output.json, commands::path(args)),
         Command::Run(args) => ("run", args.output.json, commands::run(args)),
         Command::Summary(args) => ("summary", args.output.json, commands::summary(args)),

@@ -65,6 +65,11 @@ impl Watch for CaseProgress<'_> {
         self.bar.tick();
     }
 
+    fn modes(&self, found: usize) {
+        self.bar.set_message(format!("modes: {found} found"));
+        self.bar.tick();
+    }
+
     fn motion(&self, time_s: f64, duration_s: f64) {
         if !self.in_motion.replace(true) {
             self.bar
@@ -109,6 +114,7 @@ mod tests {
         let interrupt = Interrupt::default();
         let bar = progress.begin("a", &interrupt);
         bar.statics(3, 1.0);
+        bar.modes(4);
         bar.motion(1.0, 0.0);
         assert!(!bar.stop());
         drop(bar);

@@ -50,6 +50,59 @@ fn run_writes_results_figures_and_a_comparison() {
 }
 
 #[test]
+fn modes_are_told_proved_stored_and_drawn() {
+    let bench = Bench::new("");
+    let (code, stdout, stderr) = bench.run(&["modes", "model.toml", "--out", "out"]);
+    assert_eq!(code, 0, "{stderr}");
+    for text in [
+        "Hanging pipe: natural modes",
+        "moves most",
+        "modes were counted up to",
+        "With the added mass of the water",
+        "Note: A test.",
+        "modes_one_pipe.svg, .png",
+    ] {
+        assert!(stdout.contains(text), "{text} is missing in\n{stdout}");
+    }
+    assert!(
+        stdout.lines().all(|line| line.chars().count() <= 100),
+        "{stdout}"
+    );
+    for file in [
+        "results.zarr/cases/one/modes/frequency/zarr.json",
+        "results.zarr/cases/one/modes/lines/pipe/displacement_x/zarr.json",
+        "results.zarr/cases/one/modes/bodies/pump/displacement_x/zarr.json",
+        "figures/modes_one_pipe.png",
+    ] {
+        assert!(bench.path("out").join(file).is_file(), "{file}");
+    }
+    let (_, all) = bench.json(&["modes", "model.toml"]);
+    let (_, band) = bench.json(&["modes", "model.toml", "--band", "0.1 Hz..1 Hz"]);
+    let (_, air) = bench.json(&["modes", "model.toml", "--air", "--count", "2"]);
+    let modes = |document: &serde_json::Value| {
+        let modes = document["cases"]["one"]["modes"].as_array();
+        modes.cloned().unwrap_or_default()
+    };
+    let vibrations = |document: &serde_json::Value| -> Vec<f64> {
+        let modes = modes(document);
+        let shaking = modes.iter().filter(|mode| mode["kind"] == "vibration");
+        shaking
+            .filter_map(|mode| mode["frequency_hz"].as_f64())
+            .collect()
+    };
+    assert!(vibrations(&all).len() >= 10, "ten, where nothing is said");
+    let inside = vibrations(&band);
+    assert!(!inside.is_empty() && inside.iter().all(|hz| (0.1..1.0).contains(hz)));
+    assert!(vibrations(&air)[0] > vibrations(&all)[0]);
+    let (code, document) = bench.json(&["modes", "model.toml", "--count", "1000"]);
+    assert_eq!(code, 1);
+    assert_eq!(document["cases"]["one"]["error"]["code"], "modes::too_many");
+    let (code, _, stderr) = bench.run(&["modes", "model.toml", "--band", "2..1"]);
+    assert_eq!(code, 2);
+    assert!(stderr.contains("from a lower to a higher"), "{stderr}");
+}
+
+#[test]
 fn json_documents_have_the_keys_that_the_guide_lists() {
     let bench = Bench::new(BAD_CASE);
     let guide = repository_file("docs/cli.md");
@@ -57,6 +110,7 @@ fn json_documents_have_the_keys_that_the_guide_lists() {
     for arguments in [
         &["check", "model.toml"][..],
         &["statics", "model.toml"],
+        &["modes", "model.toml", "--count", "4"],
         &["run", "model.toml", "--out", "out"],
         &["summary", "out"],
         &["check", "nothing.toml"],

@@ -14,6 +14,9 @@ pub mod system;
 
 pub use analysis::dynamics::{DynamicsError, DynamicsReport, SolverStatistics, simulate};
 pub use analysis::energy::EnergyAccount;
+pub use analysis::modes::{
+    Mode, ModeKind, Modes, ModesError, ModesProgress, Motion, Proof, find_modes,
+};
 pub use analysis::path::{PathEnd, PathError, PathEvent, PathPoint, PathReport, follow_path};
 pub use analysis::statics::{StaticSolution, StaticsError, StaticsProgress, solve_statics};
-pub use system::{StepView, System, SystemError};
+pub use system::{FrameOwner, StepView, System, SystemError};

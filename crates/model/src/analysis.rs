@@ -13,6 +13,29 @@ pub struct StaticsSettings {
     pub max_iterations: usize,
 }
 
+/// Which natural modes are sought.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModeSettings {
+    /// Which of them.
+    pub range: ModeRange,
+    /// Whether the structure moves its added mass along: modes in water, not in air.
+    pub added_mass: bool,
+}
+
+/// Which natural modes are sought: so many, or all in a band.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ModeRange {
+    /// The lowest ones, this many.
+    Lowest(usize),
+    /// All between two frequencies.
+    Band {
+        /// Lower end [Hz].
+        from_hz: f64,
+        /// Upper end [Hz].
+        to_hz: f64,
+    },
+}
+
 /// How the motion is integrated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DynamicsSettings {

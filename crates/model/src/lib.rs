@@ -15,7 +15,9 @@ mod motion;
 mod output;
 mod path;
 
-pub use analysis::{DynamicsSettings, IntegratorSettings, StaticsSettings, StepControl};
+pub use analysis::{
+    DynamicsSettings, IntegratorSettings, ModeRange, ModeSettings, StaticsSettings, StepControl,
+};
 pub use body::{Body, Vessel};
 pub use environment::{Current, CurrentPoint, Environment, Seabed, Water};
 pub use line::{
@@ -51,6 +53,8 @@ pub struct Model {
     pub loads: Vec<PointLoad>,
     /// How static equilibrium is sought.
     pub statics: StaticsSettings,
+    /// Which natural modes are sought, where the caller does not say.
+    pub modes: ModeSettings,
     /// How the motion is integrated; `None` when the file describes statics only.
     pub dynamics: Option<DynamicsSettings>,
     /// Which equilibrium path is followed; `None` when the file asks for none.

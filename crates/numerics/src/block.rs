@@ -48,6 +48,39 @@ impl Block6 {
         }
     }
 
+    /// y += self x.
+    #[inline]
+    pub fn add_times(&self, x: &Vector6, y: &mut Vector6) {
+        for column in 0..6 {
+            let factor = x[column];
+            let source = self.column(column);
+            for row in 0..6 {
+                y[row] += source[row] * factor;
+            }
+        }
+    }
+
+    /// Rows and columns exchanged.
+    pub fn transposed(&self) -> Block6 {
+        let mut block = Block6::ZERO;
+        for column in 0..6 {
+            for row in 0..6 {
+                block.0[column + 6 * row] = self.at(row, column);
+            }
+        }
+        block
+    }
+
+    /// self + factor other.
+    #[inline]
+    pub fn plus(&self, factor: f64, other: &Block6) -> Block6 {
+        let mut sum = *self;
+        for (entry, added) in sum.0.iter_mut().zip(&other.0) {
+            *entry += factor * added;
+        }
+        sum
+    }
+
     /// y -= self x.
     #[inline]
     pub fn subtract_times(&self, x: &Vector6, y: &mut Vector6) {

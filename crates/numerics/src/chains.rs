@@ -113,6 +113,30 @@ impl BlockMatrix {
         self.tail.fill([Block6::ZERO; 2]);
     }
 
+    /// (A + A^T) / 2.
+    pub fn symmetric_part(&self) -> BlockMatrix {
+        let mean = |a: &Block6, b: &Block6| {
+            let mut sum = a.plus(1.0, &b.transposed());
+            sum.0.iter_mut().for_each(|entry| *entry *= 0.5);
+            sum
+        };
+        let pairs = |list: &[[Block6; 2]]| -> Vec<[Block6; 2]> {
+            list.iter()
+                .map(|[out, back]| [mean(out, back), mean(back, out)])
+                .collect()
+        };
+        let across = |a: &[Block6], b: &[Block6]| -> Vec<Block6> {
+            a.iter().zip(b).map(|(a, b)| mean(a, b)).collect()
+        };
+        BlockMatrix {
+            diagonal: across(&self.diagonal, &self.diagonal),
+            upper: across(&self.upper, &self.lower),
+            lower: across(&self.lower, &self.upper),
+            head: pairs(&self.head),
+            tail: pairs(&self.tail),
+        }
+    }
+
     /// y <- y - A x, the residual of a solution.
     pub fn subtract_times(&self, topology: &Topology, x: &[Vector6], y: &mut [Vector6]) {
         for (k, block) in self.diagonal.iter().enumerate() {
@@ -250,7 +274,7 @@ impl Factorisation {
     /// Number of negative eigenvalues of the symmetric matrix that was factorised last: a
     /// congruence takes it to its pivot blocks, so theirs are counted.
     ///
-    /// Source: docs/theory/path.md, eq. (9).
+    /// Source: docs/theory/modes.md, eq. (8), and docs/theory/path.md, eq. (9).
     pub fn negative_eigenvalues(&self) -> usize {
         let pivots = self.lu.iter().chain(self.junctions.pivots());
         pivots.map(negative_eigenvalues_of).sum()

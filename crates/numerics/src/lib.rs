@@ -1,5 +1,5 @@
 //! Mathematics without physics: rotations, 6 x 6 blocks, the block solver for chains that meet at
-//! junctions, and the implicit time integrator.
+//! junctions, its eigenvalues, and the implicit time integrator.
 //!
 //! Every unknown is a *frame*: three translations and three rotations. Vectors over frames are
 //! slices of [`Vector6`], translation first, all components in the global axes. Rotations are
@@ -9,6 +9,7 @@ mod bdf;
 mod block;
 mod chains;
 mod differences;
+pub mod eigen;
 mod frames;
 mod generalised_alpha;
 mod implicit;

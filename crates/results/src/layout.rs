@@ -48,6 +48,11 @@ pub(crate) fn line_path(case: &Path, line: &str) -> PathBuf {
     lines_path(case).join(component(line))
 }
 
+/// Directory of the group that holds a case's natural modes.
+pub(crate) fn modes_path(case: &Path) -> PathBuf {
+    case.join("modes")
+}
+
 /// A name as one component of a path: what a file system or Zarr could take for more than a name
 /// is written as `%` and two hexadecimal digits, as in a URL.
 pub(crate) fn component(name: &str) -> String {

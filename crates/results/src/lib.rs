@@ -12,6 +12,7 @@ mod case_arrays;
 mod error;
 pub mod figure;
 mod layout;
+mod modes;
 mod outcome;
 mod overview;
 mod path;
@@ -30,6 +31,7 @@ mod zarr;
 
 pub use error::StoreError;
 pub use layout::{STORE_FORMAT, STORE_NAME};
+pub use modes::{CaseModes, ModeReport, ModeShapes, ModesReport, MotionShare};
 pub use outcome::{CaseOutcome, DynamicsFacts, StaticsFacts, mean_order};
 pub use overview::{BodyOverview, CurrentOverview, LineOverview, ModelOverview, VesselOverview};
 pub use path::{CasePath, PathChannel, PathPointFacts, StudyPaths};

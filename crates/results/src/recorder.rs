@@ -10,7 +10,9 @@ use crate::outcome::CaseOutcome;
 use crate::store_reader::StoredCase;
 use crate::summarise::{CaseLayout, StatisticsSource};
 use crate::zarr::{Attributes, Group};
-use crate::{CaseSummary, Extent, Extremes, Sample, Status, StoreError, WindowStatistics};
+use crate::{
+    CaseModes, CaseSummary, Extent, Extremes, Sample, Status, StoreError, WindowStatistics,
+};
 
 /// Longest elapsed time between two flushes. A killed run loses at most this much of its work.
 const FLUSH_INTERVAL: Duration = Duration::from_secs(2);
@@ -97,6 +99,11 @@ impl CaseRecorder {
         }
         self.arrays = Some(arrays);
         self.flush()
+    }
+
+    /// Records the natural modes about the static state.
+    pub fn record_modes(&mut self, modes: &CaseModes) -> Result<(), StoreError> {
+        modes.write(&self.group)
     }
 
     /// Records an accepted state: the start, then the end of every step.

@@ -51,6 +51,29 @@ def check_complete(store: Path) -> None:
         np.testing.assert_allclose(line[f"{quantity}_std"], 8.0 / 12.0**0.5, rtol=1e-3)
 
 
+def check_modes(store: Path) -> None:
+    modes = xr.open_zarr(store, group="cases/a/modes", consolidated=False)
+    np.testing.assert_array_equal(modes["mode"], [1.0, 2.0, 3.0])
+    assert modes["frequency"].attrs["units"] == "Hz"
+    np.testing.assert_array_equal(modes["frequency"].sel(mode=[2, 3]), [0.5, 1.0])
+    np.testing.assert_array_equal(modes["effective_mass_z"], [3.0, 6.0, 9.0])
+    assert np.isnan(modes["damping_ratio"][0])
+    assert modes.attrs["counted"] == 3 and modes.attrs["total_mass_kg"] == [10.0, 20.0, 30.0]
+    line = xr.open_zarr(store, group="cases/a/modes/lines/pipe", consolidated=False)
+    body = xr.open_zarr(store, group="cases/a/modes/bodies/buffer", consolidated=False)
+    mode, node = np.arange(1, 4)[:, None], np.arange(4)[None, :]
+    for part, unit in [("displacement", "m"), ("rotation", "rad")]:
+        for axis in range(3):
+            component = axis + (3 if part == "rotation" else 0)
+            name = f"{part}_{'xyz'[axis]}"
+            shape = line[name]
+            assert shape.dims == ("mode", "arc_length") and shape.attrs["units"] == unit
+            np.testing.assert_array_equal(shape, 100.0 * mode + 10.0 * node + component)
+            assert body[name].dims == ("mode",)
+            np.testing.assert_array_equal(body[name], 100.0 * mode[:, 0] + component)
+    assert float(line["displacement_y"].sel(mode=2, arc_length=10.0)) == 211.0
+
+
 def check_interrupted(store: Path) -> None:
     case = xr.open_zarr(store, group="cases/b", consolidated=False)
     assert case.attrs["status"] == "interrupted"
@@ -83,6 +106,7 @@ def main() -> None:
     warnings.simplefilter("error")
     complete = directory / "complete" / "results.zarr"
     check_complete(complete)
+    check_modes(complete)
     check_tree(complete)
     check_interrupted(directory / "interrupted" / "results.zarr")
     check_killed(directory / "killed" / "results.zarr")

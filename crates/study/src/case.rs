@@ -29,7 +29,7 @@ pub(crate) enum Halt {
 }
 
 /// What ends a recorded case early: the solver's reason, or the disk's.
-enum Stop {
+pub(crate) enum Stop {
     Halt(Halt),
     Store(StoreError),
 }
@@ -41,12 +41,12 @@ impl From<Halt> for Stop {
 }
 
 /// Elapsed and processor time of a case, and what is known of its outcome so far.
-struct Account {
+pub(crate) struct Account {
     wall: Instant,
     cpu: ThreadTime,
     statics: Option<StaticsFacts>,
     dynamics: Option<DynamicsFacts>,
-    warnings: Vec<String>,
+    pub(crate) warnings: Vec<String>,
     discretisation: Option<Discretisation>,
 }
 
@@ -153,7 +153,7 @@ pub(crate) fn system_of(model: &Model) -> Result<System, CaseError> {
     System::new(model).map_err(|error| case_error("system::unusable", &error))
 }
 
-fn settle<'a>(
+pub(crate) fn settle<'a>(
     system: &'a System,
     watch: &dyn Watch,
     account: &mut Account,
@@ -179,7 +179,7 @@ fn settle<'a>(
 }
 
 impl Account {
-    fn begin() -> Self {
+    pub(crate) fn begin() -> Self {
         Account {
             wall: Instant::now(),
             cpu: ThreadTime::now(),
@@ -215,7 +215,7 @@ impl Account {
         }
     }
 
-    fn outcome(self, status: Status, error: Option<CaseError>) -> CaseOutcome {
+    pub(crate) fn outcome(self, status: Status, error: Option<CaseError>) -> CaseOutcome {
         CaseOutcome {
             status,
             error,

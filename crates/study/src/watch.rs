@@ -7,6 +7,8 @@
 pub trait Watch {
     /// The static solution is at an iteration, with this largest residual force [N].
     fn statics(&self, iteration: usize, residual_n: f64);
+    /// So many natural modes were found.
+    fn modes(&self, found: usize);
     /// A trial run towards a wanted accuracy begins: its number and its elements.
     fn trial(&self, number: usize, elements: usize);
     /// The motion is at a time [s] of its duration [s].
@@ -18,6 +20,8 @@ pub trait Watch {
 /// Nobody looks on.
 impl Watch for () {
     fn statics(&self, _iteration: usize, _residual_n: f64) {}
+
+    fn modes(&self, _found: usize) {}
 
     fn trial(&self, _number: usize, _elements: usize) {}
 

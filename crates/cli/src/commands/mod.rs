@@ -1,12 +1,14 @@
 //! One file per command.
 
 mod check;
+mod modes;
 mod path;
 mod run;
 mod statics;
 mod summary;
 
 pub(crate) use check::{CheckReport, check};
+pub(crate) use modes::{CaseModesReport, ModesDocument, modes};
 pub(crate) use path::path;
 pub(crate) use run::run;
 pub(crate) use statics::statics;

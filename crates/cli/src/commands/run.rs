@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use catenix_results::figure::study_chart;
+use catenix_results::figure::{Drawing, study_chart};
 use catenix_results::{Provenance, ResultStore, StoreError, StoredStudy, Summary};
 use catenix_study::compute_case;
 use serde::Serialize;
@@ -68,24 +68,35 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, Failure> {
 /// Draws every figure of the study as SVG and PNG.
 fn write_figures(store: &Path, directory: &Path) -> Result<Vec<PathBuf>, StoreError> {
     let study = StoredStudy::open(store)?;
-    let figures = directory.join("figures");
     let mut files = Vec::new();
     for figure in study.figures() {
         let drawing = study_chart(&study, &figure)?.draw();
-        let stem = figure.name.replace(['/', '\\', ':'], "_");
-        for (extension, content) in [
-            ("svg", drawing.to_svg().into_bytes()),
-            ("png", drawing.to_png(PNG_SCALE)?),
-        ] {
-            let path = figures.join(format!("{stem}.{extension}"));
-            std::fs::create_dir_all(&figures)
-                .and_then(|()| std::fs::write(&path, content))
-                .map_err(|source| StoreError::Write {
-                    path: path.clone(),
-                    source,
-                })?;
-            files.push(path);
-        }
+        files.extend(write_chart(&drawing, &figure.name, directory)?);
+    }
+    Ok(files)
+}
+
+/// Writes a drawing as SVG and PNG into the folder for figures of an output directory.
+pub(super) fn write_chart(
+    drawing: &Drawing,
+    name: &str,
+    directory: &Path,
+) -> Result<Vec<PathBuf>, StoreError> {
+    let figures = directory.join("figures");
+    let stem = name.replace(['/', '\\', ':'], "_");
+    let mut files = Vec::new();
+    for (extension, content) in [
+        ("svg", drawing.to_svg().into_bytes()),
+        ("png", drawing.to_png(PNG_SCALE)?),
+    ] {
+        let path = figures.join(format!("{stem}.{extension}"));
+        std::fs::create_dir_all(&figures)
+            .and_then(|()| std::fs::write(&path, content))
+            .map_err(|source| StoreError::Write {
+                path: path.clone(),
+                source,
+            })?;
+        files.push(path);
     }
     Ok(files)
 }

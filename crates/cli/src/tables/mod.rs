@@ -3,6 +3,7 @@
 mod check;
 mod discretisation;
 mod grid;
+mod modes;
 mod number;
 mod path;
 mod references;
@@ -10,9 +11,10 @@ mod statics;
 mod summary;
 
 pub(crate) use check::check_text;
+pub(crate) use modes::modes_text;
 pub(crate) use path::path_text;
 pub(crate) use statics::statics_text;
-pub(crate) use summary::{files_text, summary_text};
+pub(crate) use summary::{errors_text, files_text, summary_text};
 
 use unicode_width::UnicodeWidthStr;
 

@@ -1,8 +1,9 @@
-//! Analyses: static equilibrium and motion.
+//! Analyses: static equilibrium, natural modes and motion.
 
 pub mod dynamics;
 pub mod energy;
 mod free_motion;
+pub mod modes;
 pub mod path;
 mod path_step;
 pub mod statics;

@@ -290,6 +290,42 @@ pub(super) fn add_lump(
     add.angular(1, &-(arm_hat * t.angular_acceleration));
 }
 
+/// Mass matrix of a frame at its place: the structure, and the added mass if `in_water`.
+pub(super) fn frame_mass(frame: &Frame, m: &FrameMotion, sea: &Sea<'_>, in_water: bool) -> Block6 {
+    let mut place = Place::new(frame, m, sea);
+    if !in_water {
+        place.wet.share = 0.0;
+    }
+    let tensors = place.tensors(frame, &m.rotation);
+    let mut mass = Block6::ZERO;
+    mass.add_quadrant(0, 0, &tensors.mass);
+    mass.add_quadrant(1, 1, &tensors.inertia);
+    mass
+}
+
+/// Mass matrix of a lump about its frame's origin.
+pub(super) fn lump_mass(
+    lump: &FrameLump,
+    m: &FrameMotion,
+    sea: &Sea<'_>,
+    in_water: bool,
+) -> Block6 {
+    let (motion, _) = lump_motion(lump, m, sea);
+    let height = m.position.z + motion.arm.z;
+    let share = match in_water {
+        true => Submergence::new(height, 0.0, 0.0, lump.diameter).share,
+        false => 0.0,
+    };
+    let own = lump.lump.mass + share * lump.lump.added_mass;
+    let arm = hat(&motion.arm);
+    let mut mass = Block6::ZERO;
+    mass.add_quadrant(0, 0, &(Matrix3::identity() * own));
+    mass.add_quadrant(0, 1, &(arm * -own));
+    mass.add_quadrant(1, 0, &(arm * own));
+    mass.add_quadrant(1, 1, &(arm * arm * -own));
+    mass
+}
+
 /// Kinetic, gravity and contact energy of a frame and the powers of its loads.
 pub(super) fn frame_energy(
     frame: &Frame,

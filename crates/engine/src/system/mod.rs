@@ -9,6 +9,7 @@ mod build;
 mod ends;
 mod energy;
 mod frames;
+mod linearised;
 mod loads;
 mod natural;
 mod shape;
@@ -354,16 +355,27 @@ impl System {
 
     /// Squared frequency that round-off in the stiffest connector amounts to [rad2/s2].
     pub(crate) fn frequency_round_off(&self) -> f64 {
+        self.round_off(|frame| 1.0 / frame.mass)
+    }
+
+    /// The same for the spin of elements about their axes, which a connector's stiffness across
+    /// the axis meets by round-off only [rad2/s2].
+    pub(crate) fn spin_round_off(&self) -> f64 {
+        self.round_off(|frame| (0.5 * frame.length).powi(2) / frame.inertia.min())
+    }
+
+    /// Rounding of the stiffest connector, over what its frames oppose to it.
+    fn round_off(&self, softness: impl Fn(&Frame) -> f64) -> f64 {
         let stiffest = self.connectors.iter().map(|connector| {
             let stiffness = connector.law.stiffness();
-            let lightest = [connector.first.carrier, connector.second.carrier]
+            let softest = [connector.first.carrier, connector.second.carrier]
                 .into_iter()
                 .filter_map(|carrier| match carrier {
-                    Carrier::Free(k) => Some(self.frames[k].mass),
+                    Carrier::Free(k) => Some(softness(&self.frames[k])),
                     Carrier::Vessel(_) => None,
                 })
-                .fold(f64::INFINITY, f64::min);
-            stiffness.stiffest() / lightest
+                .fold(0.0, f64::max);
+            stiffness.stiffest() * softest
         });
         4.0 * f64::EPSILON * stiffest.fold(0.0, f64::max)
     }

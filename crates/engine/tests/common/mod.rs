@@ -8,9 +8,11 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use catenix_engine::{DynamicsReport, StepView, System, simulate, solve_statics};
+use catenix_engine::{
+    DynamicsReport, Modes, StepView, System, find_modes, simulate, solve_statics,
+};
 use catenix_model::file::parse_study;
-use catenix_model::{Channel, LineQuantity, Model, Study, all_channels};
+use catenix_model::{Channel, LineQuantity, ModeRange, ModeSettings, Model, Study, all_channels};
 
 /// Gravity of all test models [m/s2].
 pub const G: f64 = 9.80665;
@@ -280,4 +282,25 @@ pub fn catenary_parameter(span: f64, length: f64) -> f64 {
         }
     }
     0.5 * span / low
+}
+
+/// The lowest modes about the equilibrium of a model, with added mass where it has any.
+pub fn lowest_modes(model: &Model, count: usize) -> Modes<'static> {
+    let settings = ModeSettings {
+        range: ModeRange::Lowest(count),
+        added_mass: true,
+    };
+    modes(model, &settings)
+}
+
+/// The modes about the equilibrium of a model. The system is leaked: a test is short.
+pub fn modes(model: &Model, settings: &ModeSettings) -> Modes<'static> {
+    let system = System::new(model).unwrap_or_else(|error| panic!("{error}"));
+    let system: &'static System = Box::leak(Box::new(system));
+    let equilibrium = solve_statics(system, &mut |_| ControlFlow::Continue(()))
+        .unwrap_or_else(|error| panic!("{error}"));
+    find_modes(system, &equilibrium, settings, &mut |_| {
+        ControlFlow::Continue(())
+    })
+    .unwrap_or_else(|error| panic!("{error}"))
 }

@@ -81,6 +81,7 @@ dimensions! {
     MassMoment: "a moment of inertia", "kg m^2", [1, 2, 0, 0], "1200 kg m^2";
     MassMomentPerLength: "a moment of inertia per length", "kg m", [1, 1, 0, 0], "0.4 kg m";
     Time: "a time", "s", [0, 0, 1, 0], "8 s";
+    Frequency: "a frequency", "Hz", [0, 0, -1, 0], "0.5 Hz";
     Angle: "an angle", "rad", [0, 0, 0, 1], "90 deg";
     AngularFrequency: "an angular frequency", "rad/s", [0, 0, -1, 1], "20 rad/s";
     Speed: "a speed", "m/s", [0, 1, -1, 0], "0.5 m/s";

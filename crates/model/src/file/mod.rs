@@ -5,6 +5,7 @@
 //! values; `resolve` turns names into indices and checks the system. Load cases are laid over the
 //! base as trees, so that an override is read and checked like anything else.
 
+mod band;
 mod define;
 mod diagnostic;
 mod dimension;
@@ -26,6 +27,7 @@ use std::path::Path;
 
 use crate::{Figure, LoadCase, Study};
 
+pub use band::parse_band;
 pub use diagnostic::{Diagnostic, DiagnosticCode, ModelFileErrors};
 pub use load::MOST_BYTES;
 pub use reference::reference_markdown;

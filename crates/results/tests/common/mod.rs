@@ -9,11 +9,13 @@ use std::path::Path;
 
 use catenix_model::{
     Axis, Body, Channel, ChannelTarget, Current, DynamicsSettings, Environment, Figure,
-    IntegratorSettings, Line, LineEnd, LineType, LoadCase, Model, OutputSettings, PipeWall,
-    Reference, Section, StaticsSettings, Statistic, StepControl, Study, Vessel, Water,
+    IntegratorSettings, Line, LineEnd, LineType, LoadCase, ModeRange, ModeSettings, Model,
+    OutputSettings, PipeWall, Reference, Section, StaticsSettings, Statistic, StepControl, Study,
+    Vessel, Water,
 };
 use catenix_results::{
-    CaseOutcome, DynamicsFacts, Provenance, ResultStore, Sample, StaticsFacts, Status, Summary,
+    CaseModes, CaseOutcome, DynamicsFacts, ModeReport, ModeShapes, ModesReport, MotionShare,
+    Provenance, ResultStore, Sample, StaticsFacts, Status, Summary,
 };
 
 /// Elements of the line.
@@ -196,6 +198,10 @@ fn model() -> Model {
             tolerance: 1e-9,
             max_iterations: 100,
         },
+        modes: ModeSettings {
+            range: ModeRange::Lowest(3),
+            added_mass: true,
+        },
         dynamics: Some(DynamicsSettings {
             duration: DURATION_S,
             step: StepControl::Fixed(STEP_S),
@@ -243,6 +249,54 @@ pub fn outcome(status: Status, end_time_s: f64) -> CaseOutcome {
 }
 
 /// Records every case up to `end_s` and ends it with `status`.
+/// Three modes of the line of four nodes and of the body: component c of mode m at node n is
+/// 100 m + 10 n + c.
+pub fn modes() -> CaseModes {
+    let numbers = 1..=3;
+    let mode = |number: usize| ModeReport {
+        number,
+        kind: if number == 1 { "free" } else { "vibration" },
+        frequency_hz: Some(0.5 * (number - 1) as f64),
+        period_s: (number > 1).then(|| 2.0 / (number - 1) as f64),
+        omega_squared_rad2_s2: number as f64,
+        equals_previous: number == 3,
+        moves_most: "pipe".to_owned(),
+        arc_length_m: Some(10.0),
+        motions: vec![MotionShare {
+            motion: "y",
+            share: 1.0,
+        }],
+        damping_ratio: (number > 1).then_some(0.01),
+        effective_mass_kg: [1.0, 2.0, 3.0].map(|mass| mass * number as f64),
+        residual: 1e-9,
+    };
+    let motion = |mode: usize, node: usize| -> [f64; 6] {
+        std::array::from_fn(|component| (100 * mode + 10 * node + component) as f64)
+    };
+    let shapes = |name: &str, nodes: usize, arc_length: Option<Vec<f64>>| ModeShapes {
+        name: name.to_owned(),
+        arc_length,
+        motion: numbers
+            .clone()
+            .map(|mode| (0..nodes).map(|node| motion(mode, node)).collect())
+            .collect(),
+    };
+    CaseModes {
+        report: ModesReport {
+            added_mass: true,
+            total_mass_kg: [10.0, 20.0, 30.0],
+            counted_between_hz: [-0.001, 2.0],
+            counted: 3,
+            below_band: 0,
+            unsymmetric_coupling: 0.0,
+            factorisations: 7,
+            modes: numbers.clone().map(mode).collect(),
+        },
+        lines: vec![shapes("pipe", 4, Some(vec![0.0, 10.0, 20.0, 30.0]))],
+        bodies: vec![shapes("buffer", 1, None)],
+    }
+}
+
 pub fn write_store(directory: &Path, study: &Study, end_s: f64, status: Status) -> Summary {
     let cases: Vec<&LoadCase> = study.cases.iter().collect();
     let provenance = provenance();
@@ -251,6 +305,7 @@ pub fn write_store(directory: &Path, study: &Study, end_s: f64, status: Status) 
     for case in &study.cases {
         let mut recorder = store.record_case(case);
         recorder.record_static(case, &Moment { time: 0.0 }).unwrap();
+        recorder.record_modes(&modes()).unwrap();
         for step in 0..=(end_s / STEP_S) as usize {
             recorder
                 .record(&Moment {

@@ -5,8 +5,11 @@ use crate::file::dimension::Dimensionless;
 use crate::file::log::Log;
 use crate::file::node::Span;
 use crate::file::quantity::Quantity;
-use crate::file::tables::{DynamicsTable, IntegratorChoice, StaticsTable};
-use crate::{DynamicsSettings, IntegratorSettings, Motion, StaticsSettings, StepControl, Vessel};
+use crate::file::tables::{DynamicsTable, IntegratorChoice, ModesTable, StaticsTable};
+use crate::{
+    DynamicsSettings, IntegratorSettings, ModeRange, ModeSettings, Motion, StaticsSettings,
+    StepControl, Vessel,
+};
 
 use super::Slot;
 
@@ -30,6 +33,43 @@ pub(super) fn statics(table: &StaticsTable, log: &mut Log) -> StaticsSettings {
         current: table.current,
         tolerance: table.tolerance.si,
         max_iterations: table.max_iterations.value,
+    }
+}
+
+/// Number of modes where the file does not say; named in the key's description.
+const DEFAULT_MODES: usize = 10;
+
+/// Resolves which modes are sought.
+pub(super) fn modes(table: &ModesTable, log: &mut Log) -> ModeSettings {
+    let from_hz = table.from.as_ref().map_or(0.0, |from| from.si);
+    let range = match (&table.to, &table.from) {
+        (Some(to), _) => {
+            if from_hz >= to.si {
+                let message = format!("the band ends at {} Hz, below its start", to.si);
+                let help = format!("write `to` above `from`, which is {from_hz} Hz");
+                log.error(Code::Value, &to.span, message, help);
+            }
+            if let Some(count) = &table.count {
+                let message = "`count` has no meaning beside a band of frequencies";
+                let help = "keep `count`, or `from` and `to`";
+                log.error(Code::ConflictingKeys, &count.span, message, help);
+            }
+            ModeRange::Band {
+                from_hz,
+                to_hz: to.si,
+            }
+        }
+        (None, Some(from)) => {
+            let message = "a band of frequencies needs its upper end `to`";
+            let help = "write, for example, to = \"2 Hz\", or give `count` instead of `from`";
+            log.error(Code::MissingKey, &from.span, message, help);
+            ModeRange::Lowest(DEFAULT_MODES)
+        }
+        (None, None) => ModeRange::Lowest(table.count.as_ref().map_or(DEFAULT_MODES, |n| n.value)),
+    };
+    ModeSettings {
+        range,
+        added_mass: table.added_mass,
     }
 }
 

@@ -123,6 +123,7 @@ pub(super) fn resolve_case(
     checks::check(&assembly, table.statics.equilibrium, log);
 
     let statics = analysis::statics(&table.statics, log);
+    let modes = analysis::modes(&table.modes, log);
     let dynamics = table
         .dynamics
         .as_ref()
@@ -169,6 +170,7 @@ pub(super) fn resolve_case(
         vessels: filled(assembly.vessels)?,
         loads: filled(loads)?,
         statics,
+        modes,
         dynamics,
         path,
         output,

@@ -1,7 +1,7 @@
-//! `[statics]` and `[dynamics]`.
+//! `[statics]`, `[modes]` and `[dynamics]`.
 
 use crate::file::define::{choice, table};
-use crate::file::dimension::{Dimensionless, Time};
+use crate::file::dimension::{Dimensionless, Frequency, Time};
 use crate::file::quantity::{NonNegative, Positive};
 use crate::file::read::Count;
 
@@ -17,6 +17,22 @@ table! {
         tolerance: Positive<Dimensionless> = 1e-7,
         /// Most iterations before giving up.
         max_iterations: Count = 10000,
+    }
+}
+
+table! {
+    /// Which natural modes `catenix modes` seeks: the lowest `count`, or all between `from` and
+    /// `to`.
+    pub(super) struct ModesTable {
+        /// Number of modes, the lowest; absent: 10.
+        count: Option<Count>,
+        /// Lower end of a band of frequencies; absent, with `to`: 0.
+        from: Option<NonNegative<Frequency>>,
+        /// Upper end of a band of frequencies.
+        to: Option<Positive<Frequency>>,
+        /// Whether the structure moves its added mass along. With `false` the modes are those in
+        /// air, about the same equilibrium.
+        added_mass: bool = true,
     }
 }
 

@@ -6,7 +6,8 @@ use crate::file::read::{Named, Text};
 
 use super::{
     AnchorTable, BodyTable, DynamicsTable, EnvironmentTable, FigureTable, LineTable, LineTypeTable,
-    LoadTable, MotionTable, OutputTable, PathTable, ReferenceTable, StaticsTable, VesselTable,
+    LoadTable, ModesTable, MotionTable, OutputTable, PathTable, ReferenceTable, StaticsTable,
+    VesselTable,
 };
 
 table! {
@@ -55,6 +56,8 @@ table! {
         loads: Named<LoadTable>,
         /// How static equilibrium is sought.
         statics: StaticsTable = NodeValue::empty_table(),
+        /// Which natural modes are sought.
+        modes: ModesTable = NodeValue::empty_table(),
         /// How the motion is integrated; without this table only statics can be computed.
         dynamics: Option<DynamicsTable>,
         /// The equilibrium path that `catenix path` follows.

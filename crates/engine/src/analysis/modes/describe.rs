@@ -1,0 +1,249 @@
+//! What an eigenvector means: where it moves, how, with which mass and damping.
+//!
+//! Source: docs/theory/modes.md, eqs. (14) to (17).
+
+use catenix_numerics::eigen::{Eigenpair, Pencil, dot};
+use catenix_numerics::{Block6, MotionState, Vector3, Vector6};
+use nalgebra::{DMatrix, SymmetricEigen};
+
+use super::{Mode, ModeKind};
+use crate::system::System;
+
+/// A way to move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Motion {
+    /// Elements across their axis, or bodies: along global x.
+    X,
+    /// Along global y.
+    Y,
+    /// Along global z.
+    Z,
+    /// Elements along their axis.
+    Axial,
+    /// Elements about their axis.
+    Torsion,
+    /// Bodies, about any axis.
+    Rotation,
+}
+
+impl Motion {
+    const ALL: [Motion; 6] = [
+        Motion::X,
+        Motion::Y,
+        Motion::Z,
+        Motion::Axial,
+        Motion::Torsion,
+        Motion::Rotation,
+    ];
+}
+
+/// Share of the largest motion from which on another counts as large.
+const ALIKE: f64 = 0.999;
+
+/// Weights of the directions by which vectors of equal frequency are told apart: unlike each
+/// other, x before y before z.
+const DIRECTIONS: [f64; 3] = [1.0, 0.5, 0.25];
+
+/// Turns the vectors of equal eigenvalues, which are any basis of their space, so that each moves
+/// in one direction and in few lines, if such there are.
+///
+/// Source: docs/theory/modes.md, eq. (14).
+pub(super) fn align_equal(system: &System, mass: &[Block6], pairs: &mut [Eigenpair], equal: f64) {
+    let mut start = 0;
+    while start < pairs.len() {
+        let first = pairs[start].value;
+        let same = |pair: &Eigenpair| (pair.value - first).abs() <= equal * first.abs();
+        let len = pairs[start..].iter().take_while(|pair| same(pair)).count();
+        if len > 1 {
+            align(system, mass, &mut pairs[start..start + len]);
+        }
+        start += len.max(1);
+    }
+}
+
+fn align(system: &System, mass: &[Block6], group: &mut [Eigenpair]) {
+    let line_weight = line_weights(system);
+    let weighted = |vector: &[Vector6]| -> Vec<Vector6> {
+        (0..mass.len())
+            .map(|k| {
+                let u = &vector[k];
+                let weight = |axis: usize| DIRECTIONS[axis] * line_weight[k];
+                let moved = Vector6::new(
+                    weight(0) * u[0],
+                    weight(1) * u[1],
+                    weight(2) * u[2],
+                    line_weight[k] * u[3],
+                    line_weight[k] * u[4],
+                    line_weight[k] * u[5],
+                );
+                let mut force = Vector6::zeros();
+                mass[k].add_times(&moved, &mut force);
+                force
+            })
+            .collect()
+    };
+    let forces: Vec<Vec<Vector6>> = group.iter().map(|pair| weighted(&pair.vector)).collect();
+    let n = group.len();
+    let matrix = DMatrix::from_fn(n, n, |row, column| {
+        0.5 * (dot(&group[row].vector, &forces[column]) + dot(&group[column].vector, &forces[row]))
+    });
+    let eigen = SymmetricEigen::new(matrix);
+    let mut order: Vec<usize> = (0..n).collect();
+    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+    let turned: Vec<Vec<Vector6>> = order
+        .iter()
+        .map(|&column| {
+            let mut vector = vec![Vector6::zeros(); mass.len()];
+            for (row, pair) in group.iter().enumerate() {
+                let share = eigen.eigenvectors[(row, column)];
+                catenix_numerics::eigen::add_scaled(&mut vector, share, &pair.vector);
+            }
+            vector
+        })
+        .collect();
+    for (pair, vector) in group.iter_mut().zip(turned) {
+        pair.vector = vector;
+    }
+}
+
+/// A weight for each line and body, so that equal lines side by side are told apart.
+fn line_weights(system: &System) -> Vec<f64> {
+    let mut weights = vec![1.0; system.frame_count()];
+    for (index, layout) in system.lines.iter().enumerate() {
+        let frames = layout.first_frame..layout.first_frame + layout.element_count;
+        weights[frames].fill(1.0 + 0.01 * (system.lines.len() - index) as f64);
+    }
+    weights
+}
+
+/// Describes eigenpairs of one system.
+pub(super) struct Describer<'s, 'p> {
+    system: &'s System,
+    state: MotionState,
+    pencil: &'s Pencil<'p>,
+    mass: &'s [Block6],
+    /// M r for r one along x, y and z.
+    inertia_along: [Vec<Vector6>; 3],
+}
+
+impl<'s, 'p> Describer<'s, 'p> {
+    pub(super) fn new(
+        system: &'s System,
+        state: &MotionState,
+        pencil: &'s Pencil<'p>,
+        mass: &'s [Block6],
+    ) -> Self {
+        let inertia_along = [0, 1, 2].map(|axis| {
+            let mut along = Vector6::zeros();
+            along[axis] = 1.0;
+            let mut inertia = vec![Vector6::zeros(); mass.len()];
+            pencil.mass_times(&vec![along; mass.len()], &mut inertia);
+            inertia
+        });
+        Describer {
+            system,
+            state: state.clone(),
+            pencil,
+            mass,
+            inertia_along,
+        }
+    }
+
+    /// Mass that a shaking along x, y and z moves (3) [kg].
+    pub(super) fn total_mass(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| {
+            self.inertia_along[axis]
+                .iter()
+                .map(|force| force[axis])
+                .sum()
+        })
+    }
+
+    /// The mode of an eigenpair, whose structural damping is `damping` = x^T C x.
+    pub(super) fn describe(&self, pair: Eigenpair, damping: f64) -> Mode {
+        let Eigenpair { value, vector } = pair;
+        let participation = |axis: usize| dot(&vector, &self.inertia_along[axis]);
+        let effective_mass_kg = [0, 1, 2].map(|axis| participation(axis).powi(2));
+        let motions = self.motions(&vector);
+        let residual = self.residual(value, &vector);
+        let turns = matches!(motions[0].0, Motion::Torsion | Motion::Rotation);
+        let part = if turns { 3 } else { 0 };
+        let motion = |d: &Vector6| -> Vector3 { d.fixed_rows::<3>(part).into_owned() };
+        let size = vector.iter().map(|d| motion(d).norm()).fold(0.0, f64::max);
+        // Where many move alike, the last is named: a body, or the lower end of a line.
+        let frame = vector
+            .iter()
+            .rposition(|d| motion(d).norm() >= ALIKE * size)
+            .unwrap_or(0);
+        let largest = motion(&vector[frame]);
+        // The largest component of the largest motion is positive.
+        let sign = largest[largest.iamax()].signum();
+        let scale = sign / size.max(f64::MIN_POSITIVE);
+        Mode {
+            kind: ModeKind::Vibration,
+            omega_squared: value,
+            damping_ratio: if value > 0.0 {
+                0.5 * damping.max(0.0) / value.sqrt()
+            } else {
+                f64::NAN
+            },
+            effective_mass_kg,
+            equals_previous: false,
+            largest_at: self.system.owner(frame),
+            motions,
+            residual,
+            shape: vector.iter().map(|d| d * scale).collect(),
+        }
+    }
+
+    /// Shares of the kinetic energy, the largest first.
+    fn motions(&self, x: &[Vector6]) -> Vec<(Motion, f64)> {
+        let mut energy = [0.0; 6];
+        let first_body = self.system.body_frame(0);
+        for (k, d) in x.iter().enumerate() {
+            let mut force = Vector6::zeros();
+            self.mass[k].add_times(d, &mut force);
+            let (u, turn) = (d.fixed_rows::<3>(0), d.fixed_rows::<3>(3));
+            let (f, moment) = (force.fixed_rows::<3>(0), force.fixed_rows::<3>(3));
+            let mut translate = |u: &Vector3, f: &Vector3| {
+                for (share, product) in energy.iter_mut().zip(u.component_mul(f).iter()) {
+                    *share += product;
+                }
+            };
+            if k >= first_body {
+                translate(&u.into(), &f.into());
+                energy[5] += turn.dot(&moment);
+                continue;
+            }
+            let axis = self.state.configuration.rotation[k] * self.system.frame_axis(k);
+            let (along, force_along) = (axis.dot(&u), axis.dot(&f));
+            translate(&(u - axis * along), &(f - axis * force_along));
+            energy[3] += along * force_along;
+            energy[4] += axis.dot(&turn) * axis.dot(&moment);
+        }
+        let energy = energy.map(|share| share.max(0.0));
+        let total = energy.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        let mut shares: Vec<(Motion, f64)> = Motion::ALL
+            .into_iter()
+            .zip(energy.map(|share| share / total))
+            .collect();
+        shares.sort_by(|a, b| b.1.total_cmp(&a.1));
+        shares
+    }
+
+    /// Largest force or moment of K x - lambda M x, over the largest of lambda M x.
+    fn residual(&self, value: f64, x: &[Vector6]) -> f64 {
+        let mut inertia = vec![Vector6::zeros(); x.len()];
+        self.pencil.mass_times(x, &mut inertia);
+        let residual = self.pencil.residual(value, x);
+        let frames = &self.system.frames;
+        let size = |forces: &[Vector6]| {
+            let newtons = |k: usize| {
+                let force = forces[k].fixed_rows::<3>(0).norm();
+                force.max(forces[k].fixed_rows::<3>(3).norm() / frames[k].residual_length)
+            };
+            (0..forces.len()).map(newtons).fold(0.0, f64::max)
+        };
+        size(&residual) / (value.abs() * size(&inertia)).max(f64::MIN_POSITIVE)
+    }
+}
