@@ -10,7 +10,8 @@ use clap::{Args, Parser, Subcommand};
 const EXIT_CODES: &str = "\
 Exit codes:
     0  everything was computed
-    1  the solver gave up in at least one load case; what was computed is kept
+    1  the solver gave up in at least one load case, what was computed is kept; or a verification
+       case failed
     2  the command line is wrong
     3  the model file is wrong
     4  a file could not be read or written
@@ -44,6 +45,9 @@ pub(crate) enum Command {
     /// Print the summary of results, also of an interrupted run
     #[command(after_help = EXIT_CODES)]
     Summary(SummaryArgs),
+    /// Compute published cases and hold them against their references
+    #[command(after_help = EXIT_CODES)]
+    Verify(VerifyArgs),
     /// Print the JSON schema of the model file, for editors
     Schema,
 }
@@ -133,6 +137,26 @@ pub(crate) struct SummaryArgs {
     pub(crate) results: PathBuf,
     #[command(flatten)]
     pub(crate) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct VerifyArgs {
+    /// Take only this case; may be given several times
+    #[arg(long = "case", value_name = "NAME")]
+    pub(crate) cases: Vec<String>,
+    /// Folder of verification cases [default: the suite that is part of the program]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) suite: Option<PathBuf>,
+    /// Write a page with tables and plots into this directory
+    #[arg(long, value_name = "DIR")]
+    pub(crate) report: Option<PathBuf>,
+    /// Only print names and titles of the cases
+    #[arg(long)]
+    pub(crate) list: bool,
+    #[command(flatten)]
+    pub(crate) output: OutputArgs,
+    #[command(flatten)]
+    pub(crate) work: WorkArgs,
 }
 
 #[derive(Debug, Args)]

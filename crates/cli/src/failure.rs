@@ -2,6 +2,7 @@
 
 use catenix_model::file::ModelFileErrors;
 use catenix_results::StoreError;
+use catenix_study::VerificationError;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -25,6 +26,10 @@ pub(crate) enum Failure {
     System { case: String, message: String },
     #[error(transparent)]
     Store(#[from] StoreError),
+    #[error(transparent)]
+    Verification(#[from] VerificationError),
+    #[error("there is no verification case `{name}` in the suite; it has {available}")]
+    UnknownVerification { name: String, available: String },
     #[error("there is no load case `{name}` in the model file; it has {available}")]
     UnknownCase { name: String, available: String },
     #[error(
@@ -48,7 +53,13 @@ impl Failure {
             Failure::Model(errors) if is_unreadable(errors) => Exit::InputOutput,
             Failure::Model(_) | Failure::System { .. } => Exit::Model,
             Failure::Store(_) | Failure::Read { .. } | Failure::Start { .. } => Exit::InputOutput,
-            Failure::UnknownCase { .. } | Failure::UnknownChannel { .. } => Exit::Usage,
+            Failure::Verification(error) => match error {
+                VerificationError::Spec { .. } | VerificationError::Model(_) => Exit::Model,
+                _ => Exit::InputOutput,
+            },
+            Failure::UnknownCase { .. }
+            | Failure::UnknownChannel { .. }
+            | Failure::UnknownVerification { .. } => Exit::Usage,
         }
     }
 
@@ -59,6 +70,8 @@ impl Failure {
             Failure::Store(error) => error.code(),
             Failure::UnknownCase { .. } => "usage::unknown_case",
             Failure::UnknownChannel { .. } => "usage::unknown_channel",
+            Failure::UnknownVerification { .. } => "usage::unknown_case",
+            Failure::Verification(_) => "verification::suite",
             Failure::Read { .. } => "io::read",
             Failure::Start { .. } => "io::start",
         }

@@ -26,6 +26,7 @@ fn main() -> ExitCode {
         Command::Path(args) => ("path", args.output.json, commands::path(args)),
         Command::Run(args) => ("run", args.output.json, commands::run(args)),
         Command::Summary(args) => ("summary", args.output.json, commands::summary(args)),
+        Command::Verify(args) => ("verify", args.output.json, commands::verify(args)),
         Command::Schema => ("schema", false, commands::schema()),
     };
     let exit = result.unwrap_or_else(|failure: Failure| {

@@ -7,10 +7,14 @@
 mod accuracy;
 mod case;
 mod modes;
+mod parallel;
 mod path;
+mod verification;
 mod watch;
 
 pub use case::{compute_case, compute_statics};
 pub use modes::compute_modes;
+pub use parallel::in_parallel;
 pub use path::compute_path;
+pub use verification::{VerificationCase, VerificationError, read_suite};
 pub use watch::Watch;

@@ -6,6 +6,7 @@ mod path;
 mod run;
 mod statics;
 mod summary;
+mod verify;
 
 pub(crate) use check::{CheckReport, check};
 pub(crate) use modes::{CaseModesReport, ModesDocument, modes};
@@ -13,13 +14,12 @@ pub(crate) use path::path;
 pub(crate) use run::run;
 pub(crate) use statics::statics;
 pub(crate) use summary::summary;
-
-use std::panic::resume_unwind;
-use std::sync::atomic::{AtomicUsize, Ordering};
+pub(crate) use verify::verify;
 
 use catenix_model::file::read_study;
 use catenix_model::{LoadCase, Study};
 use catenix_results::Status;
+use catenix_study::in_parallel;
 
 use crate::args::{ModelArgs, WorkArgs};
 use crate::failure::{Exit, Failure};
@@ -52,44 +52,18 @@ fn chosen_cases<'a>(study: &'a Study, args: &ModelArgs) -> Result<Vec<&'a LoadCa
     Ok(study.cases.iter().filter(chosen).collect())
 }
 
-/// Does `work` for every case on several threads, begun in file order; the results are in that
-/// order too.
-///
-/// Plain threads that take the next case from a queue: a case is seconds to hours of work, and a
-/// pool that splits the list in halves would begin with the first and the middle one.
+/// Does `work` for every case on several threads; the results are in file order.
 fn for_each_case<T: Send>(
     cases: &[&LoadCase],
     args: &WorkArgs,
     interrupt: &Interrupt,
     work: impl Fn(&LoadCase, &CaseProgress<'_>) -> T + Sync,
 ) -> Vec<T> {
-    let available = || std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = args
-        .threads
-        .map_or_else(available, usize::from)
-        .min(cases.len());
-    let progress = Progress::new(
-        args.quiet,
-        cases.iter().map(|case| case.name.chars().count()),
-    );
-    let next = AtomicUsize::new(0);
-    let take_cases = || {
-        let mut done = Vec::new();
-        while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let result = work(case, &progress.begin(&case.name, interrupt));
-            done.push((case.name.as_str(), result));
-        }
-        done
-    };
-    let mut results: Vec<(&str, T)> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(take_cases)).collect();
-        workers
-            .into_iter()
-            .flat_map(|worker| worker.join().unwrap_or_else(|panic| resume_unwind(panic)))
-            .collect()
-    });
-    results.sort_by_key(|(name, _)| cases.iter().position(|case| case.name == *name));
-    results.into_iter().map(|(_, result)| result).collect()
+    let names = cases.iter().map(|case| case.name.chars().count());
+    let progress = Progress::new(args.quiet, names);
+    in_parallel(cases, args.threads, |case| {
+        work(case, &progress.begin(&case.name, interrupt))
+    })
 }
 
 /// Exit code of a study that ended with this status.

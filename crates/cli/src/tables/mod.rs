@@ -9,12 +9,15 @@ mod path;
 mod references;
 mod statics;
 mod summary;
+mod verification;
 
 pub(crate) use check::check_text;
 pub(crate) use modes::modes_text;
 pub(crate) use path::path_text;
 pub(crate) use statics::statics_text;
 pub(crate) use summary::{errors_text, files_text, summary_text};
+
+pub(crate) use verification::{suite_text, verification_text};
 
 use unicode_width::UnicodeWidthStr;
 

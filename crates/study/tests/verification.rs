@@ -1,0 +1,106 @@
+//! The verification suite of the repository passes, and a suite that is wrong says how.
+
+// A panic is how a test fails, in its helpers too.
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+
+use catenix_results::VerifiedCase;
+use catenix_study::{in_parallel, read_suite};
+
+fn repository_suite() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../verification")
+}
+
+/// What did not pass, in words.
+fn failures(case: &VerifiedCase) -> Vec<String> {
+    let mut found: Vec<String> = case.error.iter().cloned().collect();
+    found.extend(
+        case.numbers
+            .iter()
+            .filter(|n| n.passed == Some(false))
+            .map(|n| {
+                format!(
+                    "{}: {:?} instead of {} {} (error {:?}, allowed {})",
+                    n.name, n.computed, n.reference, n.unit, n.error, n.tolerance
+                )
+            }),
+    );
+    found.extend(
+        case.curves
+            .iter()
+            .filter(|c| c.passed == Some(false))
+            .map(|c| format!("{}: error {}, allowed {}", c.name, c.error, c.tolerance)),
+    );
+    found.extend(case.convergences.iter().filter(|c| !c.passed).map(|c| {
+        format!(
+            "{}: order {}, expected {}: {:?}",
+            c.name, c.order, c.least_order, c.errors
+        )
+    }));
+    found
+}
+
+#[test]
+fn every_case_passes() {
+    let suite = read_suite(&repository_suite()).unwrap();
+    let results = in_parallel(&suite, None, |case| case.verify(&|| false));
+    let failed: Vec<String> = results
+        .iter()
+        .filter(|case| !case.passed)
+        .map(|case| format!("{}:\n  {}", case.name, failures(case).join("\n  ")))
+        .collect();
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+    // Nothing passes by comparing nothing.
+    for case in &results {
+        let compared = case.numbers.len() + case.curves.len() + case.convergences.len();
+        assert!(compared > 0, "{} compares nothing", case.name);
+        assert!(case.source.len() > 50, "{} names no source", case.name);
+    }
+}
+
+/// A copy of a case of the repository, with one text replaced in one of its files.
+fn changed(file: &str, from: &str, to: &str) -> tempfile::TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    let case = directory.path().join("case");
+    std::fs::create_dir(&case).unwrap();
+    for name in ["case.toml", "model.toml", "SOURCE.md"] {
+        let original = repository_suite()
+            .join("pinned-beam-frequencies")
+            .join(name);
+        let mut text = std::fs::read_to_string(original).unwrap();
+        if name == file {
+            assert!(text.contains(from));
+            text = text.replace(from, to);
+        }
+        std::fs::write(case.join(name), text).unwrap();
+    }
+    directory
+}
+
+#[test]
+fn a_wrong_reference_fails_and_a_wrong_file_says_where() {
+    let wrong = changed("case.toml", "reference = 7.070254568", "reference = 7.07");
+    let case = &read_suite(wrong.path()).unwrap()[0];
+    let result = case.verify(&|| false);
+    assert!(!result.passed && result.numbers[0].passed == Some(false));
+    assert!(result.numbers[1].passed == Some(true));
+
+    let wrong = changed("case.toml", "unit = \"Hz\"", "unit = \"rad/s\"");
+    let result = read_suite(wrong.path()).unwrap()[0].verify(&|| false);
+    assert!(result.error.unwrap().contains("\"rad/s\""));
+
+    let wrong = changed("case.toml", "tolerance", "tolerence");
+    let error = read_suite(wrong.path()).unwrap_err().to_string();
+    assert!(
+        error.contains("tolerance") && error.contains("line"),
+        "{error}"
+    );
+
+    let wrong = changed("model.toml", "[line_types.bar]", "[line_types.rod]");
+    let error = read_suite(wrong.path()).unwrap_err().to_string();
+    assert!(error.contains("bar"), "{error}");
+
+    let empty = tempfile::tempdir().unwrap();
+    assert!(read_suite(empty.path()).is_err());
+}
