@@ -33,7 +33,9 @@ pub use error::StoreError;
 pub use layout::{STORE_FORMAT, STORE_NAME};
 pub use modes::{CaseModes, ModeReport, ModeShapes, ModesReport, MotionShare};
 pub use outcome::{CaseOutcome, DynamicsFacts, StaticsFacts, mean_order};
-pub use overview::{BodyOverview, CurrentOverview, LineOverview, ModelOverview, VesselOverview};
+pub use overview::{
+    BodyOverview, CurrentOverview, LineOverview, LoadOverview, ModelOverview, VesselOverview,
+};
 pub use path::{CasePath, PathChannel, PathPointFacts, StudyPaths};
 pub use recorder::CaseRecorder;
 pub use sample::Sample;

@@ -1,7 +1,8 @@
 //! Overview of a model: what it consists of, how heavy it is, what acts on it.
 
 use catenix_model::{
-    Attachment, Environment, Joint, Line, LineEnd, LineType, Model, StepControl, SupportRef,
+    Attachment, Environment, Joint, Line, LineEnd, LineType, LoadPlace, LoadVariation, Model,
+    PointLoad, StepControl, SupportRef,
 };
 use indexmap::IndexMap;
 use serde::Serialize;
@@ -25,6 +26,25 @@ pub struct ModelOverview {
     pub bodies: IndexMap<String, BodyOverview>,
     /// Vessels and anchors by name.
     pub vessels: IndexMap<String, VesselOverview>,
+    /// Point loads by name.
+    pub loads: IndexMap<String, LoadOverview>,
+}
+
+/// A point load in an overview.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LoadOverview {
+    /// Line or body that it acts on.
+    pub on: String,
+    /// On a line: unstretched distance from end A [m]; null on a body.
+    pub arc_length_m: Option<f64>,
+    /// Force (3) [N]: global, or in local axes when it follows.
+    pub force_n: [f64; 3],
+    /// Moment (3) [N m]: global, or in local axes when it follows.
+    pub moment_n_m: [f64; 3],
+    /// Whether it turns with what it acts on.
+    pub follows: bool,
+    /// Whether it changes over time.
+    pub varies: bool,
 }
 
 /// Current at the surface.
@@ -115,8 +135,29 @@ impl ModelOverview {
             lines,
             bodies: bodies.collect(),
             vessels: vessels.collect(),
+            loads: model
+                .loads
+                .iter()
+                .map(|load| load_overview(load, model))
+                .collect(),
         }
     }
+}
+
+fn load_overview(load: &PointLoad, model: &Model) -> (String, LoadOverview) {
+    let (on, arc_length_m) = match load.place {
+        LoadPlace::Line { line, arc_length } => (&model.lines[line].name, Some(arc_length)),
+        LoadPlace::Body { body, .. } => (&model.bodies[body].name, None),
+    };
+    let overview = LoadOverview {
+        on: on.clone(),
+        arc_length_m,
+        force_n: load.force,
+        moment_n_m: load.moment,
+        follows: load.follows,
+        varies: load.variation != LoadVariation::Constant,
+    };
+    (load.name.clone(), overview)
 }
 
 fn line_overview(line: &Line, model: &Model) -> LineOverview {

@@ -20,6 +20,10 @@ pub(crate) fn check_text(report: &CheckReport<'_>) -> String {
         text.push('\n');
         text.push_str(&supports(&first.overview));
         text.push('\n');
+        if !first.overview.loads.is_empty() {
+            text.push_str(&loads(&first.overview));
+            text.push('\n');
+        }
     }
     text.push_str(&cases(report));
     if !report.figures.is_empty() {
@@ -57,8 +61,8 @@ fn lines(overview: &ModelOverview) -> String {
             line.elements.to_string(),
             element,
             line.attachments.to_string(),
-            fixed(Some(line.mass_kg / 1e3), 2),
-            fixed(Some(line.wet_weight_n / 1e3), 2),
+            number(line.mass_kg / 1e3),
+            number(line.wet_weight_n / 1e3),
             format!("{}, {}", line.end_a, line.end_b),
         ]);
     }
@@ -75,8 +79,8 @@ fn supports(overview: &ModelOverview) -> String {
         };
         grid.row([
             name.clone(),
-            fixed(Some(body.mass_kg / 1e3), 2),
-            fixed(Some(body.wet_weight_n / 1e3), 2),
+            number(body.mass_kg / 1e3),
+            number(body.wet_weight_n / 1e3),
             remark,
         ]);
     }
@@ -89,6 +93,33 @@ fn supports(overview: &ModelOverview) -> String {
         };
         let remark = format!("{kind}, at rest at x {x}, y {y}, z {z} m");
         grid.row([name.as_str(), "-", "-", &remark]);
+    }
+    grid.text()
+}
+
+fn loads(overview: &ModelOverview) -> String {
+    let mut grid = Grid::new(&[0, 1, 4]);
+    grid.header(["load", "on", "force kN", "moment kN m", "remark"]);
+    for (name, load) in &overview.loads {
+        let place = match load.arc_length_m {
+            Some(at) => format!("{} at {} m", load.on, number(at)),
+            None => load.on.clone(),
+        };
+        let vector = |v: &[f64; 3]| v.map(|part| number(part / 1e3)).join(", ");
+        let remarks: Vec<&str> = [
+            (load.follows, "turns with it"),
+            (load.varies, "varies over time"),
+        ]
+        .into_iter()
+        .filter_map(|(holds, remark)| holds.then_some(remark))
+        .collect();
+        grid.row([
+            name.clone(),
+            place,
+            vector(&load.force_n),
+            vector(&load.moment_n_m),
+            remarks.join(", "),
+        ]);
     }
     grid.text()
 }

@@ -100,9 +100,9 @@ fn digits(hz: f64) -> String {
 
 fn proof(report: &ModesReport) -> String {
     let surroundings = if report.added_mass {
-        "With the added mass of the water"
+        "With the added mass of the water, where there is any"
     } else {
-        "Without added mass, about the equilibrium in water"
+        "Without added mass, about the same equilibrium"
     };
     let [low, high] = report.counted_between_hz;
     let below = match report.below_band {

@@ -10,7 +10,7 @@
 //! rotation; the tangent is exact.
 //!
 //! Lines whose sections have directions, a stress-free bend or a law given by points differ in the
-//! moment ([`super::bend`]) and the tension only; see docs/theory/sections.md.
+//! moment (`bend.rs`) and the tension only; see docs/theory/sections.md.
 //!
 //! Source: docs/theory/dem.md, eqs. (1) to (12). Deviation from Li et al. 2011: rotations are
 //! finite, where the paper's six springs are written for small ones; the twist is that of
