@@ -27,8 +27,8 @@ pub use line::{
 pub use load::{LoadPlace, LoadVariation, PointLoad};
 pub use motion::{Degree, Motion, TowLeg};
 pub use output::{
-    Axis, Channel, ChannelTarget, Figure, LineQuantity, OutputSettings, Reference, Statistic,
-    all_channels,
+    Angle, Axis, Channel, ChannelTarget, Figure, LineQuantity, OutputSettings, Reference,
+    Statistic, all_channels,
 };
 pub use path::{PathSettings, PathStop};
 

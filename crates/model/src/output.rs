@@ -47,6 +47,28 @@ impl Axis {
     }
 }
 
+/// One of the three angles of an orientation: R = Rz(heading) Ry(pitch) Rx(roll), from local to
+/// global axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Angle {
+    /// About the local x axis.
+    Roll,
+    /// About the y axis after heading.
+    Pitch,
+    /// About global z, from global x towards y.
+    Heading,
+}
+
+impl Angle {
+    /// All three, in the order of arrays that hold them.
+    pub const ALL: [Angle; 3] = [Angle::Roll, Angle::Pitch, Angle::Heading];
+
+    /// Name in channels.
+    pub fn name(self) -> &'static str {
+        ["roll", "pitch", "heading"][self as usize]
+    }
+}
+
 /// What a channel records.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ChannelTarget {
@@ -56,8 +78,12 @@ pub enum ChannelTarget {
     BodyOffset(usize, Axis),
     /// Angle of a body's local z axis from the vertical [deg].
     BodyTilt(usize),
+    /// An angle of a body's orientation [deg].
+    BodyAngle(usize, Angle),
     /// Position of a vessel's origin, global [m].
     VesselPosition(usize, Axis),
+    /// An angle of a vessel's orientation [deg].
+    VesselAngle(usize, Angle),
     /// Force of a line on what its end (0 for A, 1 for B) is connected to, global [N].
     EndForce(usize, usize, Axis),
     /// Moment of a line on what its end is connected to, about the connection point, global [N m].
@@ -225,9 +251,13 @@ pub fn all_channels(model: &Model) -> Vec<Channel> {
 
 /// Channels of a vessel or anchor.
 pub(crate) fn vessel_channels(index: usize, name: &str) -> Vec<Channel> {
-    per_axis(name, "", "m", |axis| {
+    let mut channels = per_axis(name, "", "m", |axis| {
         ChannelTarget::VesselPosition(index, axis)
-    })
+    });
+    channels.extend(per_angle(name, |angle| {
+        ChannelTarget::VesselAngle(index, angle)
+    }));
+    channels
 }
 
 /// Channels of a body.
@@ -245,6 +275,9 @@ pub(crate) fn body_channels(index: usize, name: &str, has_offset: bool) -> Vec<C
         unit: "deg",
         target,
     });
+    channels.extend(per_angle(name, |angle| {
+        ChannelTarget::BodyAngle(index, angle)
+    }));
     channels
 }
 
@@ -283,4 +316,13 @@ fn per_axis(
         target: target(axis),
     };
     Axis::ALL.map(channel).into()
+}
+
+fn per_angle(object: &str, target: impl Fn(Angle) -> ChannelTarget) -> Vec<Channel> {
+    let channel = |angle: Angle| Channel {
+        name: format!("{object}.{}", angle.name()),
+        unit: "deg",
+        target: target(angle),
+    };
+    Angle::ALL.map(channel).into()
 }

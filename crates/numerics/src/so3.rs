@@ -175,6 +175,20 @@ pub fn shortest_arc(from: &Vector3, to: &Vector3) -> Matrix3 {
     exp(&(cross * (sin.atan2(cos) / sin)))
 }
 
+/// Angles a, b, c of R = Rz(c) Ry(b) Rx(a), (3) [rad]: a and c in -pi..pi, b in -pi/2..pi/2.
+///
+/// At b = pi/2 only the difference of c and a means anything; a is then taken as zero.
+/// Source: docs/theory/rotations.md, eq. (10).
+pub fn angles(r: &Matrix3) -> [f64; 3] {
+    let across = r[(0, 0)].hypot(r[(1, 0)]);
+    let b = (-r[(2, 0)]).atan2(across);
+    // Nearer to the pole than this, the entries that hold a and c are mostly rounding.
+    if across < 1e-12 {
+        return [0.0, b, (-r[(0, 1)]).atan2(r[(1, 1)])];
+    }
+    [r[(2, 1)].atan2(r[(2, 2)]), b, r[(1, 0)].atan2(r[(0, 0)])]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -232,6 +246,26 @@ mod tests {
                 * u / (2.0 * step);
             // Central differences: 1e-16 / 1e-5 of rounding, 1e-10 of truncation.
             assert_relative_eq!(left_jacobian_derivative(&phi, &u) * d, numeric, epsilon = 1e-8);
+        }
+
+        #[test]
+        fn angles_compose_to_the_rotation(phi in vector(1.8), pole in prop::bool::ANY) {
+            // At the pole the composition must hold too, though its angles are not unique.
+            let r = if pole {
+                exp(&(Vector3::z() * phi.z))
+                    * exp(&(Vector3::y() * std::f64::consts::FRAC_PI_2))
+                    * exp(&(Vector3::x() * phi.x))
+            } else {
+                exp(&phi)
+            };
+            let [a, b, c] = angles(&r);
+            let back = exp(&(Vector3::z() * c)) * exp(&(Vector3::y() * b)) * exp(&(Vector3::x() * a));
+            // Where a and c come from entries of 1e-12 (the bound in the code), rounding leaves
+            // 1e-16 / 1e-12 of each; their sum, which the matrix shows, is good to that.
+            assert_relative_eq!(back, r, epsilon = 1e-3);
+            if !pole {
+                assert_relative_eq!(back, r, epsilon = 1e-12);
+            }
         }
 
         #[test]

@@ -415,11 +415,15 @@ impl System {
     pub fn has_channel(&self, target: ChannelTarget) -> bool {
         let (lines, bodies) = (self.lines.len(), self.model.bodies.len());
         match target {
-            ChannelTarget::BodyPosition(k, _) | ChannelTarget::BodyTilt(k) => k < bodies,
+            ChannelTarget::BodyPosition(k, _)
+            | ChannelTarget::BodyTilt(k)
+            | ChannelTarget::BodyAngle(k, _) => k < bodies,
             ChannelTarget::BodyOffset(k, _) => {
                 k < bodies && self.model.bodies[k].offset_vessel.is_some()
             }
-            ChannelTarget::VesselPosition(k, _) => k < self.vessels.len(),
+            ChannelTarget::VesselPosition(k, _) | ChannelTarget::VesselAngle(k, _) => {
+                k < self.vessels.len()
+            }
             ChannelTarget::EndForce(k, end, _) | ChannelTarget::EndMoment(k, end, _) => {
                 k < lines && end < 2
             }

@@ -1,7 +1,7 @@
 //! Results read off a state: channels and quantities along lines.
 
 use catenix_model::{Axis, ChannelTarget, LineQuantity};
-use catenix_numerics::{MotionState, Vector3, Vector6};
+use catenix_numerics::{MotionState, Vector3, Vector6, so3};
 
 use super::ConnectorLaw;
 use super::assembly::{EvaluatedPair, PairState};
@@ -69,6 +69,14 @@ impl StepView<'_> {
                     .column(2)
                     .into_owned();
                 angle_between(&axis, &Vector3::z())
+            }
+            ChannelTarget::BodyAngle(body, angle) => {
+                let frame = self.solver.system.body_frame(body);
+                let rotation = &self.state.configuration.rotation[frame];
+                so3::angles(rotation)[angle as usize].to_degrees()
+            }
+            ChannelTarget::VesselAngle(vessel, angle) => {
+                so3::angles(&self.solver.vessels[vessel].rotation)[angle as usize].to_degrees()
             }
             ChannelTarget::VesselPosition(vessel, axis) => {
                 pick(&self.solver.vessels[vessel].position, axis)
