@@ -18,6 +18,7 @@ pub(crate) const VERSION_KEY: &str = "catenix_version";
 pub(crate) const STATUS_KEY: &str = "status";
 pub(crate) const SUMMARY_KEY: &str = "summary_json";
 pub(crate) const LAYOUT_KEY: &str = "layout_json";
+pub(crate) const SCENE_KEY: &str = "scene_json";
 pub(crate) const FIGURES_KEY: &str = "figures_json";
 pub(crate) const HISTORY_ROWS_KEY: &str = "history_rows";
 pub(crate) const FIELD_ROWS_KEY: &str = "field_rows";

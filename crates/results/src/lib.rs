@@ -9,6 +9,8 @@
 //! The layout of the store is in docs/results.md; it opens in xarray as it is.
 
 mod case_arrays;
+mod description;
+mod envelope;
 mod error;
 pub mod figure;
 mod layout;
@@ -18,6 +20,7 @@ mod overview;
 mod path;
 mod recorder;
 mod sample;
+mod scene;
 mod series;
 mod static_summary;
 mod statistics;
@@ -29,6 +32,10 @@ mod summary;
 mod verification;
 mod zarr;
 
+pub use description::{
+    ArrayPlace, CaseDescription, CaseProgress, ChannelPlace, LinePlace, QuantityPlace,
+};
+pub use envelope::Envelope;
 pub use error::StoreError;
 pub use layout::{STORE_FORMAT, STORE_NAME};
 pub use modes::{CaseModes, ModeReport, ModeShapes, ModesReport, MotionShare};
@@ -39,6 +46,9 @@ pub use overview::{
 pub use path::{CasePath, PathChannel, PathPointFacts, StudyPaths};
 pub use recorder::CaseRecorder;
 pub use sample::Sample;
+pub use scene::{
+    Scene, SceneAttachment, SceneBody, SceneCurrent, SceneEnd, SceneLine, SceneSection, SceneVessel,
+};
 pub use statistics::{Extremes, RangeGraph, WindowStatistics};
 pub use store::{Provenance, ResultStore, StoredFigure};
 pub use store_reader::{Field, History, StoredCase, StoredStudy};

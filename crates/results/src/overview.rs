@@ -1,11 +1,13 @@
 //! Overview of a model: what it consists of, how heavy it is, what acts on it.
 
 use catenix_model::{
-    Attachment, Environment, Joint, Line, LineEnd, LineType, LoadPlace, LoadVariation, Model,
-    PointLoad, StepControl, SupportRef,
+    Attachment, Environment, Line, LineEnd, LineType, LoadPlace, LoadVariation, Model, PointLoad,
+    StepControl, SupportRef,
 };
 use indexmap::IndexMap;
 use serde::Serialize;
+
+use crate::scene::joint_word;
 
 /// What a model consists of. The keys are a public interface, described in docs/cli.md.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -218,14 +220,5 @@ fn end_text(end: &LineEnd, model: &Model) -> String {
         SupportRef::Vessel(index) => &model.vessels[index].name,
         SupportRef::Body(index) => &model.bodies[index].name,
     };
-    let joint = match connection.joint {
-        Joint::Ball {
-            rotational_stiffness: 0.0,
-        } => "ball",
-        Joint::Ball { .. } => "flex joint",
-        Joint::Universal { .. } => "universal",
-        Joint::Hinge { .. } => "hinge",
-        Joint::Fixed => "fixed",
-    };
-    format!("{support} ({joint})")
+    format!("{support} ({})", joint_word(&connection.joint))
 }

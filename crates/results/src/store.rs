@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::layout::{self, STORE_FORMAT, STORE_NAME};
 use crate::summary::Status;
 use crate::zarr::{Attributes, Group, write_atomically};
-use crate::{CaseRecorder, StoreError, Summary};
+use crate::{CaseRecorder, Scene, StoreError, Summary};
 
 /// Where results come from.
 #[derive(Debug, Clone, PartialEq)]
@@ -193,6 +193,8 @@ fn case_attributes(case: &LoadCase) -> Attributes {
     attributes.insert(layout::STATUS_KEY.into(), Status::Pending.word().into());
     let layout_text = serde_json::to_string(&layout::case_layout(case)).unwrap_or_default();
     attributes.insert(layout::LAYOUT_KEY.into(), layout_text.into());
+    let scene_text = serde_json::to_string(&Scene::new(model)).unwrap_or_default();
+    attributes.insert(layout::SCENE_KEY.into(), scene_text.into());
     let mut insert = |key: &str, value: f64| attributes.insert(key.to_owned(), value.into());
     if let Some(water) = model.environment.water {
         insert("water_depth_m", water.depth);

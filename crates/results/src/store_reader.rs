@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use catenix_model::LineQuantity;
+use serde::Serialize;
 use serde_json::Value;
 
 use crate::layout::{
@@ -32,7 +33,7 @@ pub struct StoredCase {
 }
 
 /// A time history.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct History {
     /// Unit of the values.
     pub unit: String,
@@ -118,6 +119,16 @@ impl StoredStudy {
         text(&self.attributes, "note")
     }
 
+    /// How far the study came; `Running` also when its process was killed.
+    pub fn status(&self) -> Status {
+        status(&self.attributes)
+    }
+
+    /// Attributes of the study as text, empty where there is none.
+    pub fn attribute(&self, key: &str) -> String {
+        text(&self.attributes, key)
+    }
+
     /// The figures that the model file asks for.
     pub fn figures(&self) -> Vec<StoredFigure> {
         serde_json::from_str(&text(&self.attributes, layout::FIGURES_KEY)).unwrap_or_default()
@@ -158,6 +169,15 @@ impl StoredStudy {
 impl StoredCase {
     pub(crate) fn new(group: Group, name: String) -> Self {
         StoredCase { group, name }
+    }
+
+    pub(crate) fn group(&self) -> &Group {
+        &self.group
+    }
+
+    /// Name of the case.
+    pub fn name(&self) -> &str {
+        &self.name
     }
 
     /// How far the case came; `Running` also when its process was killed.
@@ -217,6 +237,18 @@ impl StoredCase {
             times_s: times.read_rows(0, rows)?,
             values: array.read_rows(0, rows)?,
         })
+    }
+
+    /// The quantity of that name, if the line has it.
+    pub fn quantity(&self, line: &str, name: &str) -> Result<LineQuantity, StoreError> {
+        let known = LineQuantity::ALL.into_iter().find(|q| q.name() == name);
+        let quantity = known.ok_or_else(|| StoreError::UnknownLineResult {
+            case: self.name.clone(),
+            line: line.to_owned(),
+            quantity: name.to_owned(),
+        })?;
+        self.line_array(line, quantity.name())?;
+        Ok(quantity)
     }
 
     /// Names of the lines, sorted.
@@ -303,16 +335,9 @@ impl StoredCase {
         line: &str,
         quantity: LineQuantity,
     ) -> Result<Extremes, StoreError> {
-        let array = self.line_array(line, quantity.name())?;
-        let (nodes, chunk_rows) = (array.shape().row_len(), array.shape().chunk_rows);
-        let rows = rows(&self.group.attributes()?, layout::FIELD_ROWS_KEY).min(array.shape().rows);
+        let nodes = self.line_array(line, quantity.name())?.shape().row_len();
         let mut extremes = Extremes::new(nodes);
-        for start in (0..rows).step_by(chunk_rows) {
-            let end = (start + chunk_rows).min(rows);
-            for row in array.read_rows(start, end)?.chunks_exact(nodes.max(1)) {
-                extremes.add(row);
-            }
-        }
+        self.for_each_stored_row(line, quantity, &mut |row| extremes.add(row))?;
         Ok(extremes)
     }
 
@@ -326,7 +351,7 @@ impl StoredCase {
         Ok(StoredStatistics::new(self, &times, window_s))
     }
 
-    fn line_array(&self, line: &str, name: &str) -> Result<Array, StoreError> {
+    pub(crate) fn line_array(&self, line: &str, name: &str) -> Result<Array, StoreError> {
         let path = layout::line_path(self.group.path(), line).join(name);
         if !path.join("zarr.json").is_file() {
             return Err(StoreError::UnknownLineResult {
@@ -354,7 +379,7 @@ impl StoredCase {
             .max_by_key(shared)
     }
 
-    fn damaged(&self, what: &str) -> StoreError {
+    pub(crate) fn damaged(&self, what: &str) -> StoreError {
         StoreError::Damaged {
             path: self.group.path().to_path_buf(),
             what: what.to_owned(),
@@ -362,16 +387,16 @@ impl StoredCase {
     }
 }
 
-fn status(attributes: &Attributes) -> Status {
+pub(crate) fn status(attributes: &Attributes) -> Status {
     Status::from_word(&text(attributes, layout::STATUS_KEY)).unwrap_or(Status::Running)
 }
 
-fn rows(attributes: &Attributes, key: &str) -> usize {
+pub(crate) fn rows(attributes: &Attributes, key: &str) -> usize {
     let rows = attributes.get(key).and_then(Value::as_u64).unwrap_or(0);
     usize::try_from(rows).unwrap_or(0)
 }
 
-fn text(attributes: &Attributes, key: &str) -> String {
+pub(crate) fn text(attributes: &Attributes, key: &str) -> String {
     attributes
         .get(key)
         .and_then(Value::as_str)
@@ -379,7 +404,7 @@ fn text(attributes: &Attributes, key: &str) -> String {
         .to_owned()
 }
 
-fn subdirectories(path: &Path) -> Result<Vec<PathBuf>, StoreError> {
+pub(crate) fn subdirectories(path: &Path) -> Result<Vec<PathBuf>, StoreError> {
     let entries = match fs::read_dir(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
         other => other.map_err(|source| StoreError::read(path, source))?,

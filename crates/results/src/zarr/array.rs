@@ -28,7 +28,8 @@ impl FloatKind {
         }
     }
 
-    fn name(self) -> &'static str {
+    /// Zarr's name of the type.
+    pub(crate) fn name(self) -> &'static str {
         match self {
             FloatKind::F32 => "float32",
             FloatKind::F64 => "float64",
@@ -120,6 +121,11 @@ impl Array {
     /// Shape and chunks.
     pub(crate) fn shape(&self) -> &ArrayShape {
         &self.shape
+    }
+
+    /// Width of the floats.
+    pub(crate) fn kind(&self) -> FloatKind {
+        self.kind
     }
 
     /// Attributes, `units` among them.
