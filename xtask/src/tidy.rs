@@ -12,6 +12,7 @@ mod links;
 mod sources;
 mod theory;
 mod tokens;
+mod web;
 
 use std::fmt;
 use std::path::Path;
@@ -52,6 +53,7 @@ pub(crate) fn check(root: &Path) -> Result<Vec<Violation>, String> {
     violations.extend(theory::check(&files));
     violations.extend(links::check(root, &files));
     violations.extend(architecture::check(&files));
+    violations.extend(web::check(root)?);
     violations.sort();
     violations.dedup();
     Ok(violations)

@@ -1,5 +1,6 @@
 //! The command line: commands, flags, and the help text.
 
+use std::net::IpAddr;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -48,6 +49,9 @@ pub(crate) enum Command {
     /// Compute published cases and hold them against their references
     #[command(after_help = EXIT_CODES)]
     Verify(VerifyArgs),
+    /// Show results in the browser, also while a run writes them
+    #[command(after_help = EXIT_CODES)]
+    View(ViewArgs),
     /// Print the JSON schema of the model file, for editors
     Schema,
 }
@@ -123,11 +127,50 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
+    pub(crate) live: LiveArgs,
+    #[command(flatten)]
     pub(crate) output: OutputArgs,
     #[command(flatten)]
     pub(crate) work: WorkArgs,
     #[command(flatten)]
     pub(crate) accuracy: AccuracyArgs,
+}
+
+/// Where the viewer of a run listens.
+#[derive(Debug, Args)]
+pub(crate) struct LiveArgs {
+    /// Show the results in the browser while they are computed, and until Ctrl-C
+    #[arg(long)]
+    pub(crate) live: bool,
+    /// Port of the viewer [default: any that is free]
+    #[arg(long, value_name = "PORT", requires = "live")]
+    pub(crate) port: Option<u16>,
+    /// Print the viewer's address without opening the browser
+    #[arg(long, requires = "live")]
+    pub(crate) no_open: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ViewArgs {
+    /// Directory that `catenix run` wrote, or the results.zarr in it
+    #[arg(value_name = "RESULTS")]
+    pub(crate) results: PathBuf,
+    #[command(flatten)]
+    pub(crate) listen: ListenArgs,
+}
+
+/// Where a viewer listens.
+#[derive(Debug, Args)]
+pub(crate) struct ListenArgs {
+    /// Port [default: any that is free]
+    #[arg(long, value_name = "PORT")]
+    pub(crate) port: Option<u16>,
+    /// Address to listen on, for viewing from another machine [default: this machine only]
+    #[arg(long, value_name = "IP")]
+    pub(crate) address: Option<IpAddr>,
+    /// Print the address without opening the browser
+    #[arg(long)]
+    pub(crate) no_open: bool,
 }
 
 #[derive(Debug, Args)]

@@ -3,6 +3,7 @@
 use catenix_model::file::ModelFileErrors;
 use catenix_results::StoreError;
 use catenix_study::VerificationError;
+use catenix_viewer::ViewerError;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -30,6 +31,8 @@ pub(crate) enum Failure {
     Verification(#[from] VerificationError),
     #[error("there is no verification case `{name}` in the suite; it has {available}")]
     UnknownVerification { name: String, available: String },
+    #[error(transparent)]
+    Viewer(#[from] ViewerError),
     #[error("there is no load case `{name}` in the model file; it has {available}")]
     UnknownCase { name: String, available: String },
     #[error(
@@ -52,7 +55,10 @@ impl Failure {
             // A file that cannot be read is trouble with the disk, not with the model.
             Failure::Model(errors) if is_unreadable(errors) => Exit::InputOutput,
             Failure::Model(_) | Failure::System { .. } => Exit::Model,
-            Failure::Store(_) | Failure::Read { .. } | Failure::Start { .. } => Exit::InputOutput,
+            Failure::Store(_)
+            | Failure::Viewer(_)
+            | Failure::Read { .. }
+            | Failure::Start { .. } => Exit::InputOutput,
             Failure::Verification(error) => match error {
                 VerificationError::Spec { .. } | VerificationError::Model(_) => Exit::Model,
                 _ => Exit::InputOutput,
@@ -68,6 +74,7 @@ impl Failure {
             Failure::Model(_) => "model::file",
             Failure::System { .. } => "model::system",
             Failure::Store(error) => error.code(),
+            Failure::Viewer(error) => error.code(),
             Failure::UnknownCase { .. } => "usage::unknown_case",
             Failure::UnknownChannel { .. } => "usage::unknown_channel",
             Failure::UnknownVerification { .. } => "usage::unknown_case",

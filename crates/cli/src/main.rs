@@ -27,6 +27,7 @@ fn main() -> ExitCode {
         Command::Run(args) => ("run", args.output.json, commands::run(args)),
         Command::Summary(args) => ("summary", args.output.json, commands::summary(args)),
         Command::Verify(args) => ("verify", args.output.json, commands::verify(args)),
+        Command::View(args) => ("view", false, commands::view(args)),
         Command::Schema => ("schema", false, commands::schema()),
     };
     let exit = result.unwrap_or_else(|failure: Failure| {

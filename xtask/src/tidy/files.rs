@@ -4,7 +4,9 @@ use std::fs;
 use std::path::Path;
 
 /// Endings of the files that a person writes and the checks read.
-const TEXT_ENDINGS: [&str; 8] = ["rs", "md", "toml", "py", "sh", "yml", "yaml", "txt"];
+const TEXT_ENDINGS: [&str; 12] = [
+    "rs", "md", "toml", "py", "sh", "yml", "yaml", "txt", "ts", "mjs", "css", "html",
+];
 
 /// Folders that hold what programs made, at any depth.
 const GENERATED_FOLDERS: [&str; 5] = ["target", ".git", "node_modules", ".venv", "__pycache__"];
@@ -69,7 +71,10 @@ fn read_folder(root: &Path, folder: &str, files: &mut Vec<TextFile>) -> Result<(
 
 /// Results are written to `results/` at the root by default; `crates/results` is a crate.
 fn is_generated(path: &str, name: &str) -> bool {
-    GENERATED_FOLDERS.contains(&name) || path == "results" || name.ends_with(".zarr")
+    GENERATED_FOLDERS.contains(&name)
+        || path == "results"
+        || path == "crates/viewer/assets"
+        || name.ends_with(".zarr")
 }
 
 fn is_text(path: &str, name: &str) -> bool {

@@ -149,6 +149,12 @@ const MACHINE_ROOTS: [&str; 5] = ["home", "root", "Users", "work", "tmp"];
 /// Checks all Rust sources, and every text file for machine paths.
 pub(crate) fn check(files: &[TextFile]) -> Vec<Violation> {
     let mut violations: Vec<Violation> = files.iter().flat_map(machine_paths).collect();
+    violations.extend(
+        files
+            .iter()
+            .filter(|file| is_web(file))
+            .flat_map(web_source),
+    );
     let sources: Vec<(&TextFile, Result<Vec<Token>, String>)> = files
         .iter()
         .filter(|file| file.has_ending("rs"))
@@ -290,6 +296,33 @@ fn check_strangers(path: &str, tokens: &[Token]) -> Vec<Violation> {
             ),
         })
         .collect()
+}
+
+/// Sources of the viewer's page.
+fn is_web(file: &TextFile) -> bool {
+    file.path.starts_with("web/") && (file.has_ending("ts") || file.has_ending("mjs"))
+}
+
+/// The rules on length, unfinished code and ignored tests, for the page's sources.
+fn web_source(file: &TextFile) -> Vec<Violation> {
+    let words = [
+        ("no-unfinished-code", "TODO"),
+        ("no-unfinished-code", "@ts-ignore"),
+        ("no-ignored-tests", "test.skip"),
+        ("no-ignored-tests", "test.only"),
+        ("no-ignored-tests", "skip: true"),
+    ];
+    let lines = file.text.lines().enumerate();
+    let found = lines.flat_map(|(index, line)| {
+        let broken = words.iter().filter(move |(_, word)| line.contains(word));
+        broken.map(move |(rule, word)| Violation {
+            file: file.path.clone(),
+            line: index + 1,
+            rule,
+            message: format!("`{word}`: what is committed works, and every test runs."),
+        })
+    });
+    found.chain(file_length(file)).collect()
 }
 
 fn file_length(file: &TextFile) -> Option<Violation> {

@@ -7,6 +7,7 @@ mod run;
 mod statics;
 mod summary;
 mod verify;
+mod view;
 
 pub(crate) use check::{CheckReport, check};
 pub(crate) use modes::{CaseModesReport, ModesDocument, modes};
@@ -15,6 +16,7 @@ pub(crate) use run::run;
 pub(crate) use statics::statics;
 pub(crate) use summary::summary;
 pub(crate) use verify::verify;
+pub(crate) use view::view;
 
 use catenix_model::file::read_study;
 use catenix_model::{LoadCase, Study};

@@ -8,8 +8,8 @@ use catenix_study::compute_case;
 use serde::Serialize;
 
 use super::statics::study_summary;
-use super::{chosen_cases, exit_of, for_each_case, read};
-use crate::args::{ModelArgs, RunArgs};
+use super::{chosen_cases, exit_of, for_each_case, read, view};
+use crate::args::{ListenArgs, ModelArgs, RunArgs};
 use crate::failure::{Document, Exit, Failure};
 use crate::interrupt::Interrupt;
 use crate::{print, tables};
@@ -38,6 +38,15 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, Failure> {
         .unwrap_or_else(|| default_directory(&args.model.file));
     let store = ResultStore::create(&directory, &study, &cases, &provenance)?;
     let interrupt = Interrupt::listen()?;
+    let live = &args.live;
+    if live.live {
+        let listen = ListenArgs {
+            port: live.port,
+            address: None,
+            no_open: live.no_open,
+        };
+        view::start(store.path(), &listen)?;
+    }
     let results = for_each_case(&cases, &args.work, &interrupt, |case, progress| {
         compute_case(case, &store, args.accuracy.accuracy, progress)
     });
@@ -61,6 +70,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, Failure> {
     } else {
         print::text(&tables::summary_text(&summary));
         print::text(&tables::files_text(&results, &files));
+    }
+    if live.live && !interrupt.requested() {
+        print::error("computed; the viewer goes on until Ctrl-C");
+        view::wait(&interrupt);
     }
     Ok(exit)
 }
