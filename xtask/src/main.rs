@@ -11,6 +11,7 @@ mod integrators;
 mod read_back;
 mod steps;
 mod tidy;
+mod web;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -60,7 +60,8 @@ fn empty_folder(folder: &Path) -> Result<PathBuf, String> {
     Ok(folder.to_path_buf())
 }
 
-fn target_folder(root: &Path) -> Result<PathBuf, String> {
+/// Cargo's folder for what is built.
+pub(crate) fn target_folder(root: &Path) -> Result<PathBuf, String> {
     MetadataCommand::new()
         .manifest_path(root.join("Cargo.toml"))
         .no_deps()

@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
-use crate::{documentation, read_back};
+use crate::{documentation, read_back, web};
 
 struct Step {
     name: &'static str,
@@ -17,7 +17,7 @@ struct Step {
     run: fn(&Path) -> Result<(), String>,
 }
 
-const STEPS: [Step; 6] = [
+const STEPS: [Step; 7] = [
     Step {
         name: "format",
         what: "sources are formatted with rustfmt",
@@ -42,6 +42,11 @@ const STEPS: [Step; 6] = [
         name: "read-back",
         what: "xarray reads a store that catenix wrote (needs python3 with venv, and pip)",
         run: read_back::run,
+    },
+    Step {
+        name: "web",
+        what: "the viewer's page is built from its sources and works in a browser (needs node, npm, Chromium)",
+        run: web::run,
     },
     Step {
         name: "tests",
