@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-use catenix_engine::{System, find_modes, follow_path, simulate, solve_statics};
+use catenix_engine::{ModeKind, System, find_modes, follow_path, simulate, solve_statics};
 use catenix_model::{Line, Model, StepControl, Study, all_channels};
 
 use super::spec::{Analysis, Origin, Value};
@@ -31,6 +31,8 @@ struct Table {
     steps: Vec<Vec<f64>>,
     /// Frequencies that count, in order [Hz].
     frequencies_hz: Vec<f64>,
+    /// Frequencies of rotations about the own axis, in order [Hz].
+    rotations_hz: Vec<f64>,
     /// Factors of limit points and of bifurcations.
     events: BTreeMap<&'static str, Vec<f64>>,
 }
@@ -69,6 +71,9 @@ impl<'a> Results<'a> {
         match (computation.analysis, word) {
             (Analysis::Modes, "frequency") if number > 0 => {
                 return pick(Some(&table.frequencies_hz), "Hz");
+            }
+            (Analysis::Modes, "rotation") if number > 0 => {
+                return pick(Some(&table.rotations_hz), "Hz");
             }
             (Analysis::Path, "limit" | "bifurcation") if number > 0 => {
                 return pick(table.events.get(word), "");
@@ -173,6 +178,12 @@ fn compute(model: &Model, analysis: Analysis, stop: &dyn Fn() -> bool) -> Result
                 .modes
                 .iter()
                 .filter(|mode| !mode.equals_previous && !mode.is_rotation())
+                .map(|mode| mode.frequency_hz())
+                .collect();
+            table.rotations_hz = modes
+                .modes
+                .iter()
+                .filter(|mode| mode.is_rotation() && mode.kind == ModeKind::Vibration)
                 .map(|mode| mode.frequency_hz())
                 .collect();
         }

@@ -58,7 +58,7 @@ pub(super) struct Origin {
     /// Load case of the model file; absent: its first.
     pub load_case: Option<String>,
     /// A channel; or `frequency N` of the modes, equal pairs and rotations about the own axis
-    /// counted once and not at all; or `limit N` or `bifurcation N`, a factor of the path; or
+    /// counted once and not at all; or `rotation N`, among those rotations; or `limit N` or `bifurcation N`, a factor of the path; or
     /// `momentum`, `angular_momentum` and `energy` of the motion, for their drift.
     pub result: String,
     /// Which value of a history; needed for dynamics.
