@@ -245,7 +245,7 @@ export class App {
     if (this.study) {
       this.panels.refresh(this.study, cases);
     }
-    this.graphs.refresh();
+    this.graphs.refresh(false);
     this.exports.refresh();
     tellEmpty(cases);
     this.wake(true);
@@ -335,7 +335,7 @@ export class App {
     this.stage.draw(this.stageState(), options);
     byId("loading").hidden = this.ready;
     this.clock();
-    this.graphs.refresh();
+    this.graphs.refresh(this.ready);
     this.graphs.moment(time, this.decimals, forced && this.ready);
     this.values.moment(time, this.decimals, forced);
   }

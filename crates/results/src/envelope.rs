@@ -88,12 +88,8 @@ impl StoredCase {
     ) -> Result<History, StoreError> {
         let stored = rows(&self.group().attributes()?, FIELD_ROWS_KEY);
         let times_s = self.line_array(line, "field_time")?.read_rows(0, stored)?;
-        let mut values = Vec::with_capacity(times_s.len());
-        self.for_each_stored_row(line, quantity, &mut |row| {
-            values.push(row.get(node).copied().unwrap_or(f64::NAN));
-        })?;
-        // Rows that the solver flushed meanwhile have no time here yet.
-        values.truncate(times_s.len());
+        let array = self.line_array(line, quantity.name())?;
+        let values = array.read_column(node, times_s.len())?;
         Ok(History {
             unit: quantity.unit().to_owned(),
             times_s,

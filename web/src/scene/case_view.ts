@@ -1,6 +1,6 @@
 // One load case in three dimensions: lines, vessels, bodies and lumps at a moment.
 
-import { Camera, Group, Quaternion, Vector3 } from "three";
+import { Camera, Group, Matrix4, Quaternion, Vector3 } from "three";
 import type { Palette } from "../colour";
 import type { Options, Selection } from "../options";
 import type { CaseData, CaseFrame } from "../store/case_data";
@@ -134,7 +134,6 @@ export class CaseView {
         out[k + 2] = z;
         out[k + 3] = nodes[k + 3];
       }
-      this.lines[index].touch();
       const middle = 4 * Math.floor(nodes.length / 8);
       this.places.get(`line:${place.name}`)?.set(out[middle], out[middle + 1], out[middle + 2]);
     }
@@ -209,9 +208,11 @@ export class CaseView {
     pixelAt: (place: Vector3) => number,
     pixelRatio: number,
   ): void {
+    const matrix = new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
     for (const [index, line] of this.lines.entries()) {
       const { name } = this.data.description.lines[index];
-      line.show(look, selection?.kind === "line" && selection.name === name, pixelRatio);
+      const selected = selection?.kind === "line" && selection.name === name;
+      line.show(look, selected, pixelRatio, matrix);
     }
     const symbols = [...this.objects.values(), ...this.lumps.map((lump) => lump.symbol), this.mark];
     for (const { object, size, least } of symbols) {
@@ -219,7 +220,6 @@ export class CaseView {
       const scale = Math.max(1, least / shown);
       object.scale.setScalar(object === this.mark.object ? least * pixelAt(object.position) : scale);
     }
-    void camera;
   }
 
   /** The nearest thing to a point of the picture. `project` gives pixels, or null behind. */

@@ -2,25 +2,23 @@
 // for on the screen, with round ends, coloured by the value at its nodes.
 
 import {
-  DataTexture,
-  Group,
-  InstancedBufferAttribute,
-  InstancedBufferGeometry,
-  InstancedInterleavedBuffer,
-  InterleavedBufferAttribute,
   BufferAttribute,
-  DynamicDrawUsage,
+  BufferGeometry,
+  Color,
+  DataTexture,
+  FloatType,
+  Group,
+  Matrix4,
   Mesh,
+  NormalBlending,
+  RGBAFormat,
   ShaderMaterial,
   Vector2,
-  Color,
-  NormalBlending,
 } from "three";
 
 const VERTEX = /* glsl */ `
-  attribute vec4 first;
-  attribute vec4 second;
-  attribute float diameter;
+  attribute vec3 corner;
+  uniform sampler2D nodes;
   uniform vec2 size;
   uniform float least;
   uniform float extra;
@@ -29,7 +27,17 @@ const VERTEX = /* glsl */ `
   varying vec2 span;
   varying float value;
 
+  vec4 texel(int index) {
+    int width = textureSize(nodes, 0).x;
+    return texelFetch(nodes, ivec2(index % width, index / width), 0);
+  }
+
   void main() {
+    // corner: number of the element, which of its ends, which side.
+    int element = int(corner.x);
+    vec4 first = texel(2 * element);
+    vec4 second = texel(2 * element + 2);
+    float diameter = texel(2 * element + 1).x;
     vec4 a = modelViewMatrix * vec4(first.xyz, 1.0);
     vec4 b = modelViewMatrix * vec4(second.xyz, 1.0);
     float va = first.w;
@@ -54,11 +62,11 @@ const VERTEX = /* glsl */ `
     float length_ = length(along);
     vec2 direction = length_ > 1e-6 ? along / length_ : vec2(1.0, 0.0);
     vec2 normal = vec2(-direction.y, direction.x);
-    bool end = position.x > 0.5;
+    bool end = corner.y > 0.5;
     float w = end ? cb.w : ca.w;
     float half_ = 0.5 * max(least, diameter * projectionMatrix[1][1] * size.y * 0.5 / w) + extra;
-    vec2 place = (end ? pb : pa) + direction * (end ? half_ : -half_) + normal * position.y * half_;
-    at = vec2(end ? length_ + half_ : -half_, position.y * half_);
+    vec2 place = (end ? pb : pa) + direction * (end ? half_ : -half_) + normal * corner.z * half_;
+    at = vec2(end ? length_ + half_ : -half_, corner.z * half_);
     span = vec2(length_, half_);
     value = end ? vb : va;
     gl_Position = vec4(place / (0.5 * size), (end ? nb.z : na.z) + back, 1.0);
@@ -113,6 +121,7 @@ function material(): ShaderMaterial {
     blending: NormalBlending,
     uniforms: {
       map: { value: null },
+      nodes: { value: null },
       range: { value: new Vector2(0, 1) },
       size: { value: new Vector2(1, 1) },
       least: { value: 3 },
@@ -125,43 +134,93 @@ function material(): ShaderMaterial {
   });
 }
 
+/** Texels in a row of the texture that holds the nodes. */
+const TEXTURE_WIDTH = 1024;
+/** Nodes nearer to each other on the screen are drawn as one [px]. */
+const NEAREST_PX = 1.5;
+/** Difference of value that is always drawn, as a share of the colour range. */
+const FINEST_COLOUR = 0.01;
+
 export class LineMesh {
   readonly group = new Group();
   /** x, y, z and value of each node (4 x nodes). */
   readonly nodes: Float32Array;
-  private buffer: InstancedInterleavedBuffer;
-  private body: Mesh<InstancedBufferGeometry, ShaderMaterial>;
-  private edge: Mesh<InstancedBufferGeometry, ShaderMaterial>;
+  /** Per drawn node: x, y, z, value; diameter of the element that begins there. */
+  private texels: Float32Array;
+  private texture: DataTexture;
+  private geometry = new BufferGeometry();
+  private body: Mesh<BufferGeometry, ShaderMaterial>;
+  private edge: Mesh<BufferGeometry, ShaderMaterial>;
 
-  constructor(nodes: number, diameters: Float32Array) {
+  // The nodes are a texture that every corner reads its element's two ends from. Instances would
+  // need no corners, but drawing without a graphics card takes them one by one: ten times longer.
+  constructor(
+    nodes: number,
+    private diameters: Float32Array,
+  ) {
     this.nodes = new Float32Array(4 * nodes);
-    this.buffer = new InstancedInterleavedBuffer(this.nodes, 4, 1);
-    this.buffer.setUsage(DynamicDrawUsage);
-    const geometry = new InstancedBufferGeometry();
-    const corners = new Float32Array([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0]);
-    geometry.setAttribute("position", new BufferAttribute(corners, 3));
-    geometry.setIndex([0, 1, 2, 0, 2, 3]);
-    geometry.setAttribute("first", new InterleavedBufferAttribute(this.buffer, 4, 0));
-    // The next node of the same buffer: each is stored once.
-    geometry.setAttribute("second", new InterleavedBufferAttribute(this.buffer, 4, 4));
-    geometry.setAttribute("diameter", new InstancedBufferAttribute(diameters, 1));
-    geometry.instanceCount = nodes - 1;
-    this.body = new Mesh(geometry, material());
-    this.edge = new Mesh(geometry, material());
+    const width = Math.min(2 * nodes, TEXTURE_WIDTH);
+    const height = Math.ceil((2 * nodes) / width);
+    this.texels = new Float32Array(4 * width * height);
+    this.texture = new DataTexture(this.texels, width, height, RGBAFormat, FloatType);
+    const elements = nodes - 1;
+    const corners = new Float32Array(12 * elements);
+    const order = new Uint32Array(6 * elements);
+    for (let k = 0; k < elements; k++) {
+      corners.set([k, 0, -1, k, 1, -1, k, 1, 1, k, 0, 1], 12 * k);
+      order.set([4 * k, 4 * k + 1, 4 * k + 2, 4 * k, 4 * k + 2, 4 * k + 3], 6 * k);
+    }
+    this.geometry.setAttribute("corner", new BufferAttribute(corners, 3));
+    this.geometry.setIndex(new BufferAttribute(order, 1));
+    this.body = new Mesh(this.geometry, material());
+    this.edge = new Mesh(this.geometry, material());
     this.edge.material.depthWrite = false;
     for (const [order, mesh] of [this.edge, this.body].entries()) {
+      mesh.material.uniforms.nodes.value = this.texture;
       mesh.frustumCulled = false;
       mesh.renderOrder = 10 + order;
       this.group.add(mesh);
     }
   }
 
-  /** The nodes have changed. */
-  touch(): void {
-    this.buffer.needsUpdate = true;
+  /**
+   * Takes over the nodes that can be told apart in a picture. `matrix`: from the scene to clip space,
+   * `look.size`: of the picture [px].
+   */
+  private refine(matrix: Matrix4, look: LineLook): void {
+    const { nodes, texels, diameters } = this;
+    const m = matrix.elements;
+    const count = nodes.length / 4;
+    const fine = FINEST_COLOUR * (look.range.y - look.range.x);
+    let drawn = 0;
+    let [lastX, lastY, lastValue] = [NaN, NaN, NaN];
+    for (let node = 0; node < count; node++) {
+      const k = 4 * node;
+      const [x, y, z, value] = [nodes[k], nodes[k + 1], nodes[k + 2], nodes[k + 3]];
+      const w = m[3] * x + m[7] * y + m[11] * z + m[15];
+      const px = (0.5 * look.size.x * (m[0] * x + m[4] * y + m[8] * z + m[12])) / w;
+      const py = (0.5 * look.size.y * (m[1] * x + m[5] * y + m[9] * z + m[13])) / w;
+      const near = Math.abs(px - lastX) + Math.abs(py - lastY) < NEAREST_PX;
+      const alike = !(Math.abs(value - lastValue) > fine);
+      const ends = node === 0 || node === count - 1;
+      if (!ends && w > 0 && near && alike && diameters[node] === diameters[node - 1]) {
+        continue;
+      }
+      [lastX, lastY, lastValue] = [px, py, value];
+      const t = 8 * drawn;
+      texels[t] = x;
+      texels[t + 1] = y;
+      texels[t + 2] = z;
+      texels[t + 3] = value;
+      texels[t + 4] = diameters[Math.min(node, count - 2)];
+      drawn++;
+    }
+    this.geometry.setDrawRange(0, 6 * (drawn - 1));
+    this.texture.needsUpdate = true;
   }
 
-  show(look: LineLook, selected: boolean, pixelRatio: number): void {
+  show(look: LineLook, selected: boolean, pixelRatio: number, matrix: Matrix4): void {
+    this.refine(matrix, look);
     for (const mesh of [this.body, this.edge]) {
       const { uniforms } = mesh.material;
       uniforms.size.value.copy(look.size);
@@ -182,7 +241,8 @@ export class LineMesh {
   }
 
   dispose(): void {
-    this.body.geometry.dispose();
+    this.texture.dispose();
+    this.geometry.dispose();
     this.body.material.dispose();
     this.edge.material.dispose();
   }

@@ -22,7 +22,7 @@ export interface ChartContent {
 }
 
 /** Most points of a curve that are drawn; more could not be told apart. */
-const MOST_POINTS = 1600;
+const MOST_POINTS = 600;
 
 export class Chart {
   private plot: uPlot | null = null;
@@ -142,7 +142,7 @@ function plain(value: number): string {
 
 /** One x axis for all curves, each thinned out to its extremes. */
 function align(curves: Curve[]): uPlot.AlignedData {
-  const tables = curves.map(({ x, y }) => thin(x, y));
+  const tables = curves.map(({ x, y }) => thinned(x, y));
   if (tables.length === 0) {
     return [[], []];
   }
@@ -154,6 +154,18 @@ function align(curves: Curve[]): uPlot.AlignedData {
     return [first, ...tables.map(([, y]) => y)];
   }
   return uPlot.join(tables);
+}
+
+/** Curves that were thinned before: most stay the same while one moves. */
+const known = new WeakMap<object, [number[], (number | null)[]]>();
+
+function thinned(x: ArrayLike<number>, y: ArrayLike<number | null>): [number[], (number | null)[]] {
+  let found = known.get(y);
+  if (!found) {
+    found = thin(x, y);
+    known.set(y, found);
+  }
+  return found;
 }
 
 /** Keeps the least and the largest of each stretch, in order. */

@@ -26,7 +26,7 @@ interface History {
 /** Elapsed time between two renewals of graphs that a run keeps changing [ms]. */
 const RENEWAL_MS = 3000;
 /** Elapsed time between two drawings of the moving curve [ms]. */
-const MOVING_MS = 90;
+const MOVING_MS = 200;
 
 export class Graphs {
   readonly data: GraphData = { history: [], range: [], historyUnit: "", rangeUnit: "" };
@@ -39,6 +39,9 @@ export class Graphs {
   private drawnAt = 0;
   private drawn = "";
   private channel = "";
+  private begun = false;
+  private scaledKey = "";
+  private scaledCurves: (number | null)[][] = [];
 
   constructor(
     private options: OptionStore,
@@ -72,11 +75,13 @@ export class Graphs {
   }
 
   /** Selection, result, cases or stored rows have changed. */
-  refresh(): void {
+  refresh(drawn = true): void {
+    // The history of one node needs every chunk of its array: the first picture goes before.
+    this.begun ||= drawn;
     const { selection, quantity } = this.options.get();
     const cases = this.cases().filter((data) => data.hasFrames);
     this.fillObjects(cases);
-    if (!selection || cases.length === 0) {
+    if (!selection || cases.length === 0 || !this.begun) {
       return;
     }
     const rows = cases.map((data) => `${data.name}/${data.description.field_rows}/${data.description.status}`);
@@ -240,7 +245,7 @@ export class Graphs {
       return;
     }
     const { selection, quantity, cases } = this.options.get();
-    if (!selection) {
+    if (!selection || (byId("graphs").hidden && !force)) {
       return;
     }
     const key = JSON.stringify([time, selection, quantity, this.requested]);
@@ -274,19 +279,27 @@ export class Graphs {
     const key = JSON.stringify([active.name, selection.name, quantity]);
     const envelope = this.envelopes.get(key)?.envelope;
     const current = shownCases.map((data) => valuesAt(data, selection.name, quantity, time));
-    const span = [...(envelope?.run_min ?? []), ...(envelope?.run_max ?? [])];
-    const shown = this.unitOf(span.length > 0 ? span : current.flatMap((c) => Array.from(c ?? [])), unit);
+    const shown = envelope
+      ? this.unitOf([extreme(envelope.run_min, Math.min), extreme(envelope.run_max, Math.max)], unit)
+      : this.unitOf(current.flatMap((c) => Array.from(c ?? [])), unit);
     const scaled = (values: ArrayLike<number | null>) =>
       Array.from(values, (value) => (value === null ? null : value * shown.factor));
     const faint = themeColour("faint");
     const curves: Curve[] = [];
     if (envelope) {
+      const stamp = `${key}${this.envelopes.get(key)?.stamp}${shown.unit}`;
+      if (stamp !== this.scaledKey) {
+        this.scaledKey = stamp;
+        const { run_min, run_max, min, max, mean } = envelope;
+        this.scaledCurves = [run_min, run_max, min, max, mean].map(scaled);
+      }
+      const [runMin, runMax, min, max, mean] = this.scaledCurves;
       curves.push(
-        { label: "smallest of the run", colour: faint, width: 1, dash: [4, 3], x: arc, y: scaled(envelope.run_min) },
-        { label: "largest of the run", colour: faint, width: 1, dash: [4, 3], x: arc, y: scaled(envelope.run_max) },
-        { label: "min", colour: faint, width: 1, x: arc, y: scaled(envelope.min) },
-        { label: "max", colour: faint, width: 1, x: arc, y: scaled(envelope.max) },
-        { label: "mean", colour: themeColour("ink"), width: 1.5, x: arc, y: scaled(envelope.mean) },
+        { label: "smallest of the run", colour: faint, width: 1, dash: [4, 3], x: arc, y: runMin },
+        { label: "largest of the run", colour: faint, width: 1, dash: [4, 3], x: arc, y: runMax },
+        { label: "min", colour: faint, width: 1, x: arc, y: min },
+        { label: "max", colour: faint, width: 1, x: arc, y: max },
+        { label: "mean", colour: themeColour("ink"), width: 1.5, x: arc, y: mean },
       );
     }
     const bands: [number, number][] = envelope ? [[3, 2]] : [];
@@ -369,6 +382,10 @@ export class Graphs {
       this.options.set({ selection: { ...selection, node } });
     }
   }
+}
+
+function extreme(values: (number | null)[], pick: (a: number, b: number) => number): number | null {
+  return values.reduce((a, b) => (a === null ? b : b === null ? a : pick(a, b)), null);
 }
 
 function hasQuantity(data: CaseData, line: string, quantity: string): boolean {

@@ -188,15 +188,36 @@ impl Array {
         self.read_rows(0, self.shape.rows)
     }
 
+    /// Reads one value of each of the first `rows` rows.
+    pub(crate) fn read_column(&self, column: usize, rows: usize) -> Result<Vec<f64>, StoreError> {
+        let (rows, row_len) = (rows.min(self.shape.rows), self.shape.row_len());
+        let mut values = Vec::with_capacity(rows);
+        if column >= row_len {
+            return Ok(vec![f64::NAN; rows]);
+        }
+        for index in 0..rows.div_ceil(self.shape.chunk_rows) {
+            values.extend(self.read_every(index, column, row_len)?);
+        }
+        values.truncate(rows);
+        Ok(values)
+    }
+
     fn read_chunk(&self, index: usize) -> Result<Vec<f64>, StoreError> {
+        self.read_every(index, 0, 1)
+    }
+
+    /// Every `step`-th value of a chunk, from the one at `first` on.
+    fn read_every(&self, index: usize, first: usize, step: usize) -> Result<Vec<f64>, StoreError> {
         let len = self.shape.chunk_rows * self.shape.row_len();
         let path = self.chunk_path(index);
         let bytes = match fs::read(&path) {
             // A chunk that was never written holds the fill value.
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(vec![f64::NAN; len]),
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                return Ok(vec![f64::NAN; (len - first).div_ceil(step)]);
+            }
             other => other.map_err(|source| StoreError::read(&path, source))?,
         };
-        chunk::decode(&bytes, len, self.kind).map_err(|fault| {
+        chunk::decode_every(&bytes, len, self.kind, first, step).map_err(|fault| {
             let what = match fault {
                 ChunkFault::Size => "the file does not have the size of a chunk",
                 ChunkFault::Checksum => "the checksum does not fit the data",
@@ -323,6 +344,9 @@ mod tests {
         array.write_all(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]).unwrap();
         let mut array = Array::open(path).unwrap();
         assert_eq!(array.read_rows(1, 3).unwrap(), [2.0, 3.0, 4.0, 5.0]);
+        assert_eq!(array.read_column(1, 2).unwrap(), [1.0, 3.0]);
+        assert_eq!(array.read_column(0, 3).unwrap(), [0.0, 2.0, 4.0]);
+        assert!(array.read_column(2, 3).unwrap().iter().all(|v| v.is_nan()));
         assert!(array.read_rows(3, 9).unwrap().iter().all(|v| v.is_nan()));
         array.set_rows(3).unwrap();
         assert_eq!(array.read().unwrap().len(), 6);

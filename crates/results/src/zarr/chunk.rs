@@ -28,12 +28,8 @@ pub(crate) fn encode(values: &[f64], chunk_len: usize, kind: FloatKind) -> Vec<u
     bytes
 }
 
-/// Checks and decodes a chunk of `chunk_len` values.
-pub(crate) fn decode(
-    bytes: &[u8],
-    chunk_len: usize,
-    kind: FloatKind,
-) -> Result<Vec<f64>, ChunkFault> {
+/// Checks a chunk of `chunk_len` values and gives its data.
+fn check(bytes: &[u8], chunk_len: usize, kind: FloatKind) -> Result<&[u8], ChunkFault> {
     if bytes.len() != chunk_len * kind.size() + 4 {
         return Err(ChunkFault::Size);
     }
@@ -41,25 +37,39 @@ pub(crate) fn decode(
     if crc32c::crc32c(data).to_le_bytes() != checksum {
         return Err(ChunkFault::Checksum);
     }
+    Ok(data)
+}
+
+/// Checks a chunk of `chunk_len` values and decodes every `step`-th from the one at `first` on.
+pub(crate) fn decode_every(
+    bytes: &[u8],
+    chunk_len: usize,
+    kind: FloatKind,
+    first: usize,
+    step: usize,
+) -> Result<Vec<f64>, ChunkFault> {
+    let data = check(bytes, chunk_len, kind)?;
     Ok(match kind {
-        FloatKind::F32 => data
-            .as_chunks::<4>()
-            .0
-            .iter()
-            .map(|value| f64::from(f32::from_le_bytes(*value)))
-            .collect(),
-        FloatKind::F64 => data
-            .as_chunks::<8>()
-            .0
-            .iter()
-            .map(|value| f64::from_le_bytes(*value))
-            .collect(),
+        FloatKind::F32 => {
+            let values = data.as_chunks::<4>().0.iter().skip(first).step_by(step);
+            values
+                .map(|value| f64::from(f32::from_le_bytes(*value)))
+                .collect()
+        }
+        FloatKind::F64 => {
+            let values = data.as_chunks::<8>().0.iter().skip(first).step_by(step);
+            values.map(|value| f64::from_le_bytes(*value)).collect()
+        }
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn decode(bytes: &[u8], len: usize, kind: FloatKind) -> Result<Vec<f64>, ChunkFault> {
+        decode_every(bytes, len, kind, 0, 1)
+    }
 
     #[test]
     fn a_chunk_survives_the_round_trip_with_nan_padding() {
