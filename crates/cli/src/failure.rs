@@ -1,6 +1,7 @@
 //! Why a command ends early, and with which exit code.
 
 use catenix_model::file::ModelFileErrors;
+use catenix_report::ReportError;
 use catenix_results::StoreError;
 use catenix_study::VerificationError;
 use catenix_viewer::ViewerError;
@@ -27,6 +28,8 @@ pub(crate) enum Failure {
     System { case: String, message: String },
     #[error(transparent)]
     Store(#[from] StoreError),
+    #[error(transparent)]
+    Report(#[from] ReportError),
     #[error(transparent)]
     Verification(#[from] VerificationError),
     #[error("there is no verification case `{name}` in the suite; it has {available}")]
@@ -57,6 +60,7 @@ impl Failure {
             Failure::Model(_) | Failure::System { .. } => Exit::Model,
             Failure::Store(_)
             | Failure::Viewer(_)
+            | Failure::Report(_)
             | Failure::Read { .. }
             | Failure::Start { .. } => Exit::InputOutput,
             Failure::Verification(error) => match error {
@@ -75,6 +79,7 @@ impl Failure {
             Failure::System { .. } => "model::system",
             Failure::Store(error) => error.code(),
             Failure::Viewer(error) => error.code(),
+            Failure::Report(error) => error.code(),
             Failure::UnknownCase { .. } => "usage::unknown_case",
             Failure::UnknownChannel { .. } => "usage::unknown_channel",
             Failure::UnknownVerification { .. } => "usage::unknown_case",

@@ -42,6 +42,10 @@ fn run_writes_results_figures_and_a_comparison() {
     ] {
         assert!(bench.path("results/model").join(file).is_file(), "{file}");
     }
+    let figure = std::fs::read_to_string(bench.path("results/model/figures/offset.svg")).unwrap();
+    for text in ["pump, offset x [m]", "Time [s]", "A test."] {
+        assert!(figure.contains(&format!(">{text}<")), "{text}");
+    }
     let (code, again, _) = bench.run(&["summary", "results/model"]);
     assert_eq!(code, 0);
     assert!(stdout.starts_with(&again), "summary prints the same tables");

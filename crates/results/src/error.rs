@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// An error of the result store or of a figure.
+/// An error of the result store.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StoreError {
@@ -92,14 +92,6 @@ pub enum StoreError {
         /// Quantity or range graph.
         quantity: String,
     },
-    /// A figure could not be turned into pixels.
-    #[error("cannot draw the figure `{name}`: {what}")]
-    Figure {
-        /// Title of the figure.
-        name: String,
-        /// What went wrong.
-        what: String,
-    },
 }
 
 impl StoreError {
@@ -129,7 +121,6 @@ impl StoreError {
             StoreError::UnknownCase { .. } => "results::unknown_case",
             StoreError::UnknownChannel { .. } => "results::unknown_channel",
             StoreError::UnknownLineResult { .. } => "results::unknown_line_result",
-            StoreError::Figure { .. } => "results::figure",
         }
     }
 }

@@ -1,10 +1,10 @@
-//! Results of a study: statistics, the result store, summaries and figures.
+//! Results of a study: statistics, the result store and summaries.
 //!
 //! Data flows in from a solver through the [`Sample`] trait: a [`ResultStore`] hands out one
 //! [`CaseRecorder`] per load case, which writes histories, line fields, range graphs, the static
 //! state and the solver's account while the case runs. [`StoredStudy`] reads a store back, whether
-//! it was finished, interrupted or killed, and makes the same [`Summary`] from it. [`figure`] draws
-//! one channel of all cases against time. [`StudyPaths`] holds equilibrium paths.
+//! it was finished, interrupted or killed, and makes the same [`Summary`] from it. [`StudyPaths`]
+//! holds equilibrium paths, [`CaseModes`] natural modes, [`Verification`] a verification suite.
 //!
 //! The layout of the store is in docs/results.md; it opens in xarray as it is.
 
@@ -12,7 +12,6 @@ mod case_arrays;
 mod description;
 mod envelope;
 mod error;
-pub mod figure;
 mod layout;
 mod modes;
 mod outcome;

@@ -3,15 +3,8 @@
 use serde::Serialize;
 
 use crate::StoreError;
-use crate::figure::{Chart, Curve};
 use crate::layout::{self, array_attributes};
 use crate::zarr::{Array, ArrayShape, Attributes, FloatKind, Group};
-
-/// Most curves of a figure.
-const MOST_CURVES: usize = 6;
-/// Largest displacement along a line, over the largest of the mode, below which the line takes no
-/// part in the mode.
-const TAKES_PART: f64 = 0.05;
 
 /// Components of a shape: names of arrays, units, and what they are.
 const COMPONENTS: [(&str, &str, &str); 6] = [
@@ -166,74 +159,6 @@ impl CaseModes {
             }
         }
         Ok(())
-    }
-
-    /// A chart of the first modes that move each line, by the line's name: the component of the
-    /// displacement that is largest, against arc length.
-    pub fn charts(&self, title: &str, note: &str) -> Vec<(String, Chart)> {
-        self.lines
-            .iter()
-            .filter_map(|line| Some((line.name.clone(), self.chart(line, title, note)?)))
-            .collect()
-    }
-
-    fn chart(&self, line: &ModeShapes, title: &str, note: &str) -> Option<Chart> {
-        let arc_length = line.arc_length.as_ref()?;
-        let mut curves = Vec::new();
-        for (mode, motion) in self.report.modes.iter().zip(&line.motion) {
-            let size = |axis: usize| motion.iter().map(|d| d[axis].abs()).fold(0.0, f64::max);
-            let axis = (0..3).max_by(|&a, &b| size(a).total_cmp(&size(b)))?;
-            let shown = mode.kind == "vibration" && !mode.equals_previous;
-            if !shown || size(axis) < TAKES_PART || mode.turns() {
-                continue;
-            }
-            let frequency = mode.frequency_hz.unwrap_or(f64::NAN);
-            let name = ["x", "y", "z"][axis];
-            curves.push(Curve {
-                label: format!(
-                    "mode {}, {}, {name}",
-                    mode.number,
-                    frequency_text(frequency)
-                ),
-                points: arc_length
-                    .iter()
-                    .copied()
-                    .zip(motion.iter().map(|d| d[axis]))
-                    .collect(),
-            });
-            if curves.len() == MOST_CURVES {
-                break;
-            }
-        }
-        if curves.is_empty() {
-            return None;
-        }
-        Some(Chart {
-            title: format!("{title}: modes of {}", line.name),
-            x_label: "Distance from end A [m]".to_owned(),
-            y_label: "Displacement over the largest of the mode".to_owned(),
-            y_unit: "-".to_owned(),
-            note: note.to_owned(),
-            curves,
-        })
-    }
-}
-
-impl ModeReport {
-    /// Whether the mode is mostly torsion of lines or rotation of bodies.
-    fn turns(&self) -> bool {
-        let first = self.motions.first().map(|share| share.motion);
-        matches!(first, Some("torsion" | "rotation"))
-    }
-}
-
-/// A frequency with its unit, four digits.
-fn frequency_text(hz: f64) -> String {
-    match hz {
-        _ if hz >= 100.0 => format!("{hz:.1} Hz"),
-        _ if hz >= 1.0 => format!("{hz:.3} Hz"),
-        _ if hz >= 0.01 => format!("{hz:.4} Hz"),
-        _ => format!("{:.3} mHz", hz * 1e3),
     }
 }
 

@@ -8,7 +8,6 @@ use catenix_model::{Channel, LoadCase, all_channels};
 use indexmap::IndexMap;
 use serde::Serialize;
 
-use crate::figure::{Chart, Curve, channel_label};
 use crate::{CaseError, Sample, Status};
 
 /// The paths of a study.
@@ -189,32 +188,5 @@ impl StudyPaths {
     pub fn default_channel(&self) -> Option<&str> {
         let mut names = self.cases.values().flat_map(|case| &case.main_channels);
         names.next().map(String::as_str)
-    }
-
-    /// The factor against a channel, one curve per case; `None` when no case has the channel.
-    pub fn chart(&self, channel: &str) -> Option<Chart> {
-        let mut unit = None;
-        let mut curves = Vec::new();
-        for (name, case) in &self.cases {
-            let Some(column) = case.channels.get(channel) else {
-                continue;
-            };
-            unit = Some(column.unit);
-            let label = match case.description.as_str() {
-                "" => name.clone(),
-                description => format!("{name}: {description}"),
-            };
-            let values = column.values.iter().copied();
-            let points = values.zip(case.factor.iter().copied()).collect();
-            curves.push(Curve { label, points });
-        }
-        Some(Chart {
-            title: format!("{}: equilibrium path", self.title),
-            x_label: format!("{} [{}]", channel_label(channel), unit?),
-            y_label: "Load factor".to_owned(),
-            y_unit: String::new(),
-            note: self.note.clone(),
-            curves,
-        })
     }
 }

@@ -37,6 +37,7 @@ const LIBRARIES: &[&str] = &[
     "crates/model/src",
     "crates/engine/src",
     "crates/results/src",
+    "crates/report/src",
 ];
 
 const RULES: &[Rule] = &[

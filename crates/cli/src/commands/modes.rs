@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use catenix_model::{LoadCase, ModeRange, ModeSettings, Study};
+use catenix_report::{figure::Chart, mode_charts, write_figure};
 use catenix_results::{CaseModes, CaseSummary, ModesReport, ResultStore, Status, StoreError};
 use catenix_study::compute_modes;
 use indexmap::IndexMap;
 use serde::Serialize;
 
-use super::run::{provenance, write_chart};
+use super::run::provenance;
 use super::statics::study_summary;
 use super::{chosen_cases, exit_of, for_each_case, read};
 use crate::args::ModesArgs;
@@ -81,7 +82,7 @@ pub(crate) fn modes(args: &ModesArgs) -> Result<Exit, Failure> {
         for (case, modes) in cases.iter().zip(&modes) {
             for (line, chart) in modes.iter().flat_map(|modes| charts(&study, case, modes)) {
                 let stem = format!("modes_{}_{line}", case.name);
-                files.extend(write_chart(&chart.draw(), &stem, directory)?);
+                files.extend(write_figure(&chart.draw(), &stem, directory)?);
             }
         }
     }
@@ -151,14 +152,10 @@ fn settings(case: &LoadCase, args: &ModesArgs) -> ModeSettings {
     settings
 }
 
-fn charts(
-    study: &Study,
-    case: &LoadCase,
-    modes: &CaseModes,
-) -> Vec<(String, catenix_results::figure::Chart)> {
+fn charts(study: &Study, case: &LoadCase, modes: &CaseModes) -> Vec<(String, Chart)> {
     let title = match study.cases.len() {
         1 => study.title.clone(),
         _ => format!("{}, {}", study.title, case.name),
     };
-    modes.charts(&title, &study.note)
+    mode_charts(modes, &title, &study.note)
 }

@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use catenix_report::{PNG_SCALE, path_chart};
 use catenix_results::{CasePath, Status, StoreError, StudyPaths};
 use catenix_study::compute_path;
 use serde::Serialize;
 
-use super::run::{PNG_SCALE, provenance};
+use super::run::provenance;
 use super::{chosen_cases, exit_of, for_each_case, read};
 use crate::args::PathArgs;
 use crate::failure::{Document, Exit, Failure};
@@ -67,7 +68,7 @@ pub(crate) fn path(args: &PathArgs) -> Result<Exit, Failure> {
 /// The figure as the bytes of an SVG or PNG file.
 fn figure(paths: &StudyPaths, channel: Option<&str>, file: &Path) -> Result<Vec<u8>, Failure> {
     let wanted = channel.or_else(|| paths.default_channel());
-    let chart = wanted.and_then(|name| paths.chart(name));
+    let chart = wanted.and_then(|name| path_chart(paths, name));
     let Some(chart) = chart else {
         let mut known = paths.cases.values().flat_map(|case| case.channels.keys());
         return Err(Failure::UnknownChannel {

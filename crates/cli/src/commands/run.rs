@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use catenix_results::figure::{Drawing, study_chart};
+use catenix_report::{study_chart, write_figure};
 use catenix_results::{Provenance, ResultStore, StoreError, StoredStudy, Summary};
 use catenix_study::compute_case;
 use serde::Serialize;
@@ -13,9 +13,6 @@ use crate::args::{ListenArgs, ModelArgs, RunArgs};
 use crate::failure::{Document, Exit, Failure};
 use crate::interrupt::Interrupt;
 use crate::{print, tables};
-
-/// Pixels per unit of a figure: 1800 across, 300 dots per inch at the width of a page.
-pub(super) const PNG_SCALE: f64 = 2.0;
 
 /// What `run --json` prints.
 #[derive(Debug, Serialize)]
@@ -79,37 +76,12 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, Failure> {
 }
 
 /// Draws every figure of the study as SVG and PNG.
-fn write_figures(store: &Path, directory: &Path) -> Result<Vec<PathBuf>, StoreError> {
+fn write_figures(store: &Path, directory: &Path) -> Result<Vec<PathBuf>, Failure> {
     let study = StoredStudy::open(store)?;
     let mut files = Vec::new();
     for figure in study.figures() {
         let drawing = study_chart(&study, &figure)?.draw();
-        files.extend(write_chart(&drawing, &figure.name, directory)?);
-    }
-    Ok(files)
-}
-
-/// Writes a drawing as SVG and PNG into the folder for figures of an output directory.
-pub(super) fn write_chart(
-    drawing: &Drawing,
-    name: &str,
-    directory: &Path,
-) -> Result<Vec<PathBuf>, StoreError> {
-    let figures = directory.join("figures");
-    let stem = name.replace(['/', '\\', ':'], "_");
-    let mut files = Vec::new();
-    for (extension, content) in [
-        ("svg", drawing.to_svg().into_bytes()),
-        ("png", drawing.to_png(PNG_SCALE)?),
-    ] {
-        let path = figures.join(format!("{stem}.{extension}"));
-        std::fs::create_dir_all(&figures)
-            .and_then(|()| std::fs::write(&path, content))
-            .map_err(|source| StoreError::Write {
-                path: path.clone(),
-                source,
-            })?;
-        files.push(path);
+        files.extend(write_figure(&drawing, &figure.name, directory)?);
     }
     Ok(files)
 }

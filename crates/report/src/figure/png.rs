@@ -6,14 +6,15 @@ use tiny_skia::{
 };
 use ttf_parser::OutlineBuilder;
 
-use super::drawing::{Anchor, Colour, Drawing, Mark, Text};
-use super::font;
-use crate::StoreError;
+use super::drawing::{Anchor, Colour, Drawing, Mark, PAPER, Stroke as DrawnStroke, Text};
+use super::font::{self, RAISED_BY, RAISED_SIZE};
+use crate::ReportError;
+use crate::number::pieces;
 
 impl Drawing {
     /// The drawing as a PNG file, `scale` pixels per unit of the drawing.
-    pub fn to_png(&self, scale: f64) -> Result<Vec<u8>, StoreError> {
-        let fail = |what: String| StoreError::Figure {
+    pub fn to_png(&self, scale: f64) -> Result<Vec<u8>, ReportError> {
+        let fail = |what: String| ReportError::Figure {
             name: self.title.clone(),
             what,
         };
@@ -23,27 +24,24 @@ impl Drawing {
                 "{width} x {height} pixels is no size for a picture"
             ))
         })?;
-        pixmap.fill(Color::WHITE);
+        pixmap.fill(colour(PAPER));
         let transform = Transform::from_scale(scale as f32, scale as f32);
         for mark in &self.marks {
             match mark {
                 Mark::Path { points, stroke } => {
-                    let dash = stroke.dash.iter().map(|length| *length as f32).collect();
-                    let stroke_style = Stroke {
-                        width: stroke.width as f32,
-                        line_join: LineJoin::Round,
-                        line_cap: LineCap::Butt,
-                        dash: StrokeDash::new(dash, 0.0),
-                        ..Stroke::default()
-                    };
-                    if let Some(path) = polyline(points) {
-                        pixmap.stroke_path(
-                            &path,
-                            &paint(stroke.colour),
-                            &stroke_style,
-                            transform,
-                            None,
-                        );
+                    if let Some(path) = polyline(points, false) {
+                        line(&mut pixmap, &path, stroke, transform);
+                    }
+                }
+                Mark::Shape {
+                    points,
+                    fill,
+                    stroke,
+                } => {
+                    if let Some(path) = polyline(points, true) {
+                        let paint = paint(*fill);
+                        pixmap.fill_path(&path, &paint, FillRule::Winding, transform, None);
+                        line(&mut pixmap, &path, stroke, transform);
                     }
                 }
                 Mark::Text(text) => {
@@ -58,14 +56,30 @@ impl Drawing {
     }
 }
 
-fn paint(colour: Colour) -> Paint<'static> {
+fn line(pixmap: &mut Pixmap, path: &Path, stroke: &DrawnStroke, transform: Transform) {
+    let dash = stroke.dash.iter().map(|length| *length as f32).collect();
+    let style = Stroke {
+        width: stroke.width as f32,
+        line_join: LineJoin::Round,
+        line_cap: LineCap::Butt,
+        dash: StrokeDash::new(dash, 0.0),
+        ..Stroke::default()
+    };
+    pixmap.stroke_path(path, &paint(stroke.colour), &style, transform, None);
+}
+
+fn colour([red, green, blue]: Colour) -> Color {
+    Color::from_rgba8(red, green, blue, 255)
+}
+
+fn paint(ink: Colour) -> Paint<'static> {
     let mut paint = Paint::default();
-    paint.set_color_rgba8(colour[0], colour[1], colour[2], 255);
+    paint.set_color(colour(ink));
     paint.anti_alias = true;
     paint
 }
 
-fn polyline(points: &[(f64, f64)]) -> Option<Path> {
+fn polyline(points: &[(f64, f64)], closed: bool) -> Option<Path> {
     let mut builder = PathBuilder::new();
     for (index, (x, y)) in points.iter().enumerate() {
         if index == 0 {
@@ -73,6 +87,9 @@ fn polyline(points: &[(f64, f64)]) -> Option<Path> {
         } else {
             builder.line_to(*x as f32, *y as f32);
         }
+    }
+    if closed {
+        builder.close();
     }
     builder.finish()
 }
@@ -91,13 +108,23 @@ fn outline(text: &Text) -> Option<Path> {
         builder: PathBuilder::new(),
         origin: text.at,
         along: shift,
+        rise: 0.0,
         scale,
         upwards: text.upwards,
     };
-    for character in text.content.chars() {
-        // Glyph 0 is the empty box that stands for a character which the font does not have.
-        face.outline_glyph(face.glyph_index(character).unwrap_or_default(), &mut pen);
-        pen.along += font::advance(&face, character) * scale;
+    for (piece, raised) in pieces(&text.content) {
+        let (size, rise) = if raised {
+            (RAISED_SIZE, RAISED_BY * text.size)
+        } else {
+            (1.0, 0.0)
+        };
+        pen.scale = scale * size;
+        pen.rise = rise;
+        for character in piece.chars() {
+            // Glyph 0 is the empty box that stands for a character which the font does not have.
+            face.outline_glyph(face.glyph_index(character).unwrap_or_default(), &mut pen);
+            pen.along += font::advance(&face, character) * pen.scale;
+        }
     }
     pen.builder.finish()
 }
@@ -107,6 +134,8 @@ struct Pen {
     builder: PathBuilder,
     origin: (f64, f64),
     along: f64,
+    /// Height of the baseline above the origin.
+    rise: f64,
     scale: f64,
     upwards: bool,
 }
@@ -114,7 +143,7 @@ struct Pen {
 impl Pen {
     fn place(&self, x: f32, y: f32) -> (f32, f32) {
         let along = self.along + f64::from(x) * self.scale;
-        let up = f64::from(y) * self.scale;
+        let up = f64::from(y) * self.scale + self.rise;
         let (x, y) = if self.upwards {
             (self.origin.0 - up, self.origin.1 - along)
         } else {

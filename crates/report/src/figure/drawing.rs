@@ -12,11 +12,25 @@ pub struct Drawing {
 /// Colour as `[red, green, blue]`.
 pub(crate) type Colour = [u8; 3];
 
+/// The ground of every drawing.
+pub(crate) const PAPER: Colour = [0xff, 0xff, 0xff];
+pub(crate) const INK: Colour = [0x1a, 0x1a, 0x1a];
+pub(crate) const GREY: Colour = [0x55, 0x55, 0x55];
+pub(crate) const GRID: Colour = [0xdd, 0xdd, 0xdd];
+pub(crate) const ZERO: Colour = [0x99, 0x99, 0x99];
+
 /// One element of a drawing, painted in order.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Mark {
+    /// An open line.
     Path {
         points: Vec<(f64, f64)>,
+        stroke: Stroke,
+    },
+    /// A closed outline, filled.
+    Shape {
+        points: Vec<(f64, f64)>,
+        fill: Colour,
         stroke: Stroke,
     },
     Text(Text),
@@ -31,7 +45,17 @@ pub(crate) struct Stroke {
     pub(crate) dash: &'static [f64],
 }
 
-/// A line of text.
+impl Stroke {
+    pub(crate) fn solid(colour: Colour, width: f64) -> Self {
+        Stroke {
+            colour,
+            width,
+            dash: &[],
+        }
+    }
+}
+
+/// A line of text; superscript characters are drawn as raised plain ones.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Text {
     /// Where the baseline starts, is centred, or ends.

@@ -1,4 +1,4 @@
-//! Figures for reports: curves against time, as SVG and PNG.
+//! Figures: curves on linear and logarithmic axes, as SVG and PNG.
 //!
 //! A [`Chart`] says what to draw, [`Chart::draw`] lays it out as a [`Drawing`] of lines and texts,
 //! and the drawing becomes SVG text or PNG pixels. Both come from the same list of marks, with the
@@ -10,10 +10,11 @@ mod chart;
 mod decimate;
 mod drawing;
 mod font;
+mod layout;
 mod legend;
+mod look;
 mod png;
 mod svg;
 
-pub(crate) use chart::channel_label;
-pub use chart::{Chart, Curve, study_chart};
+pub use chart::{Chart, ChartAxis, Curve, Look, Panel, Scale};
 pub use drawing::Drawing;

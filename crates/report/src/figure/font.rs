@@ -2,6 +2,12 @@
 
 use ttf_parser::Face;
 
+use crate::number::pieces;
+
+/// Size of raised characters, and the height of their baseline, over the size of the text.
+pub(crate) const RAISED_SIZE: f64 = 0.72;
+pub(crate) const RAISED_BY: f64 = 0.38;
+
 /// The face for a weight; `None` cannot happen with the built-in files, and then text is left out.
 pub(crate) fn face(bold: bool) -> Option<Face<'static>> {
     let bytes = if bold {
@@ -18,8 +24,10 @@ pub(crate) fn text_width(text: &str, size: f64, bold: bool) -> f64 {
         return 0.6 * size * text.chars().count() as f64;
     };
     let scale = size / f64::from(face.units_per_em());
-    text.chars()
-        .map(|character| advance(&face, character) * scale)
+    let width = |piece: &str| -> f64 { piece.chars().map(|c| advance(&face, c) * scale).sum() };
+    pieces(text)
+        .iter()
+        .map(|(piece, raised)| width(piece) * if *raised { RAISED_SIZE } else { 1.0 })
         .sum()
 }
 

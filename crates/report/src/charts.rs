@@ -1,0 +1,130 @@
+//! Charts of what the results hold.
+
+use catenix_results::{
+    CaseModes, ModeReport, ModeShapes, StoreError, StoredFigure, StoredStudy, StudyPaths,
+};
+
+use crate::figure::{Chart, ChartAxis, Curve};
+
+/// Most curves of a figure of modes.
+const MOST_MODES: usize = 6;
+/// Largest displacement along a line, over the largest of the mode, below which the line takes no
+/// part in the mode.
+const TAKES_PART: f64 = 0.05;
+
+/// The chart of a figure of the model file: its channel in every case that has got one.
+pub fn study_chart(study: &StoredStudy, figure: &StoredFigure) -> Result<Chart, StoreError> {
+    let mut curves = Vec::new();
+    for name in study.case_names() {
+        let case = study.case(name)?;
+        let history = match case.channel(&figure.channel) {
+            Ok(history) => history,
+            // A case that failed before its first step has no channels.
+            Err(StoreError::UnknownChannel { .. }) => continue,
+            Err(error) => return Err(error),
+        };
+        let points = history.times_s.into_iter().zip(history.values).collect();
+        let label = case_label(name, &case.summary()?.description);
+        curves.push(Curve::new(&label, points));
+    }
+    let x = ChartAxis::linear("Time", "s");
+    let y = ChartAxis::linear(&channel_label(&figure.channel), &figure.unit);
+    Ok(Chart::new(&figure.title, x, y, curves).with_note(&study.note()))
+}
+
+/// The load factor against a channel, one curve per case; `None` when no case has the channel.
+pub fn path_chart(paths: &StudyPaths, channel: &str) -> Option<Chart> {
+    let mut unit = None;
+    let mut curves = Vec::new();
+    for (name, case) in &paths.cases {
+        let Some(column) = case.channels.get(channel) else {
+            continue;
+        };
+        unit = Some(column.unit);
+        let values = column.values.iter().copied();
+        let points = values.zip(case.factor.iter().copied()).collect();
+        curves.push(Curve::new(&case_label(name, &case.description), points));
+    }
+    let title = format!("{}: equilibrium path", paths.title);
+    let x = ChartAxis::linear(&channel_label(channel), unit?);
+    let y = ChartAxis::linear("Load factor", "");
+    Some(Chart::new(&title, x, y, curves).with_note(&paths.note))
+}
+
+/// Charts of the first modes that move each line, by the line's name: the component of the
+/// displacement that is largest, against arc length.
+pub fn mode_charts(modes: &CaseModes, title: &str, note: &str) -> Vec<(String, Chart)> {
+    let charts = modes.lines.iter().filter_map(|line| {
+        let chart = line_modes_chart(modes, line, title)?;
+        Some((line.name.clone(), chart.with_note(note)))
+    });
+    charts.collect()
+}
+
+fn line_modes_chart(modes: &CaseModes, line: &ModeShapes, title: &str) -> Option<Chart> {
+    let arc_length = line.arc_length.as_ref()?;
+    let curves: Vec<Curve> = modes
+        .report
+        .modes
+        .iter()
+        .zip(&line.motion)
+        .filter_map(|(mode, motion)| {
+            let size = |axis: usize| motion.iter().map(|d| d[axis].abs()).fold(0.0, f64::max);
+            let axis = (0..3).max_by(|&a, &b| size(a).total_cmp(&size(b)))?;
+            let shown = mode.kind == "vibration" && !mode.equals_previous && !turns(mode);
+            if !shown || size(axis) < TAKES_PART {
+                return None;
+            }
+            let frequency = frequency_text(mode.frequency_hz.unwrap_or(f64::NAN));
+            let label = format!(
+                "mode {}, {frequency}, {}",
+                mode.number,
+                ["x", "y", "z"][axis]
+            );
+            let heights = motion.iter().map(|d| d[axis]);
+            let points = arc_length.iter().copied().zip(heights).collect();
+            Some(Curve::new(&label, points))
+        })
+        .take(MOST_MODES)
+        .collect();
+    if curves.is_empty() {
+        return None;
+    }
+    let x = ChartAxis::linear("Distance from end A", "m");
+    let y = ChartAxis::linear("Displacement over the largest of the mode", "-");
+    let title = format!("{title}: modes of {}", line.name);
+    Some(Chart::new(&title, x, y, curves))
+}
+
+/// Whether the mode is mostly torsion of lines or rotation of bodies.
+fn turns(mode: &ModeReport) -> bool {
+    let first = mode.motions.first().map(|share| share.motion);
+    matches!(first, Some("torsion" | "rotation"))
+}
+
+/// A frequency with its unit, four digits.
+fn frequency_text(hz: f64) -> String {
+    match hz {
+        _ if hz >= 100.0 => format!("{hz:.1} Hz"),
+        _ if hz >= 1.0 => format!("{hz:.3} Hz"),
+        _ if hz >= 0.01 => format!("{hz:.4} Hz"),
+        _ => format!("{:.3} mHz", hz * 1e3),
+    }
+}
+
+fn case_label(name: &str, description: &str) -> String {
+    if description.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{name}: {description}")
+    }
+}
+
+/// `hose.end_b.force_x` as "hose, end B, force x".
+fn channel_label(channel: &str) -> String {
+    channel
+        .replace("end_a", "end A")
+        .replace("end_b", "end B")
+        .replace('.', ", ")
+        .replace('_', " ")
+}
