@@ -29,11 +29,26 @@ pub(crate) fn raised(number: i32) -> String {
 }
 
 /// Pieces of a text in their order: plain ones, and raised ones in plain characters.
+///
+/// Raised are superscript characters, and what a caret says: `R^2`, `10^-3`.
 pub(crate) fn pieces(text: &str) -> Vec<(String, bool)> {
     let mut pieces: Vec<(String, bool)> = Vec::new();
-    for character in text.chars() {
+    let mut rest = text.chars().peekable();
+    let mut in_power = false;
+    while let Some(character) = rest.next() {
+        if character == '^' {
+            let mut after = rest.clone();
+            let is_negative = after.next_if_eq(&'-').is_some();
+            if after.peek().is_some_and(char::is_ascii_digit) {
+                rest = after;
+                in_power = true;
+                pieces.push((if is_negative { "−" } else { "" }.to_owned(), true));
+                continue;
+            }
+        }
+        in_power &= character.is_ascii_digit();
         let plain = RAISED.iter().find(|(from, _)| *from == character);
-        let (character, is_raised) = plain.map_or((character, false), |(_, to)| (*to, true));
+        let (character, is_raised) = plain.map_or((character, in_power), |(_, to)| (*to, true));
         match pieces.last_mut() {
             Some((piece, same)) if *same == is_raised => piece.push(character),
             _ => pieces.push((character.to_string(), is_raised)),
@@ -142,6 +157,10 @@ mod tests {
         let expected = expected.map(|(text, raised)| (text.to_owned(), raised));
         assert_eq!(pieces("3×10⁻¹² m²"), expected);
         assert_eq!(pieces(""), []);
+        let expected = [("P R", false), ("2", true), (" / 10", false), ("−3", true)];
+        let expected = expected.map(|(text, raised)| (text.to_owned(), raised));
+        assert_eq!(pieces("P R^2 / 10^-3"), expected);
+        assert_eq!(pieces("a ^ b^-c^"), [("a ^ b^-c^".to_owned(), false)]);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use catenix_report::write_verification;
 use catenix_results::{Verification, VerifiedCase};
 use catenix_study::{VerificationCase, in_parallel, read_suite};
 use include_dir::{Dir, include_dir};
@@ -53,7 +54,7 @@ pub(crate) fn verify(args: &VerifyArgs) -> Result<Exit, Failure> {
         cases: results,
     };
     let files = match &args.report {
-        Some(_) => Vec::new(),
+        Some(directory) => write_verification(&verification, directory)?,
         None => Vec::new(),
     };
     let exit = if interrupt.requested() {

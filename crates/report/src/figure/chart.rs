@@ -28,6 +28,8 @@ pub struct ChartAxis {
     pub unit: String,
     /// How values are spread over the axis.
     pub scale: Scale,
+    /// Whether zero stands on the axis even where no value is near it.
+    pub from_zero: bool,
     /// Where ticks are wanted, in `unit`; empty for round numbers.
     pub ticks: Vec<f64>,
 }
@@ -108,6 +110,7 @@ impl ChartAxis {
             label: label.to_owned(),
             unit: unit.to_owned(),
             scale: Scale::Linear,
+            from_zero: false,
             ticks: Vec::new(),
         }
     }

@@ -140,7 +140,8 @@ impl Ruler {
         target: usize,
         margin: bool,
     ) -> Self {
-        let values: Vec<f64> = values.collect();
+        let zero = what.from_zero.then_some(0.0);
+        let values: Vec<f64> = values.chain(zero).collect();
         let (unit, factor) = match what.scale {
             Scale::Linear => {
                 let largest = values.iter().map(|value| value.abs()).fold(0.0, f64::max);
