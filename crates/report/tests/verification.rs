@@ -104,6 +104,18 @@ fn suite() -> Verification {
         reference: vec![1.0],
         ..curve(HOSTILE, 0, Some(false))
     };
+    let absolute = VerifiedCase {
+        numbers: vec![VerifiedNumber {
+            unit: "N".into(),
+            reference: 47140.0,
+            computed: Some(47112.0),
+            error: Some(28.0),
+            scale: 1.0,
+            tolerance: 60.0,
+            ..number("tension", 0.0, Some(true))
+        }],
+        ..case("absolute", "Risers")
+    };
     let hostile = VerifiedCase {
         title: HOSTILE.into(),
         summary: HOSTILE.into(),
@@ -152,6 +164,7 @@ fn suite() -> Verification {
             only_shown,
             case("../??\"提升", ""),
             case("GOOD", "Vibration"),
+            absolute,
         ],
     }
 }
@@ -261,8 +274,8 @@ fn verdicts_are_counted_and_the_worst_quantities_named() {
         rows("counts"),
         [
             "Kind | passed | failed | only shown",
-            "Cases | 1 | 1 | 3",
-            "Numbers | 2 | 2 | 3",
+            "Cases | 2 | 1 | 3",
+            "Numbers | 3 | 2 | 3",
             "Curves | 1 | 2 | 1",
             "Orders of convergence | 1 | 2 | 0",
         ]
@@ -270,6 +283,7 @@ fn verdicts_are_counted_and_the_worst_quantities_named() {
     let summary = rows("summary");
     for row in [
         "good | worst | 5.0×10−4 | 1.0×10−3 | 50 % | passed | 1.5 s",
+        "absolute | tension | 28 N | 60 N | 47 % | passed | 1.5 s",
         "only-shown | – | – | – | – | only shown | 1.5 s",
     ] {
         assert!(

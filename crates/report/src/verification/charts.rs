@@ -38,7 +38,8 @@ pub(super) fn curve_chart(curve: &VerifiedCurve) -> Chart {
     let mut chart = Chart::new(&curve.name, axis(&curve.x_label), y.clone(), curves);
     chart.width = WIDTH;
     chart.panels[0].height = 230.0;
-    if difference.iter().any(|value| value.is_finite()) {
+    let differs = |value: &f64| value.is_finite() && *value != 0.0;
+    if difference.iter().any(differs) {
         chart.panels.push(Panel {
             y: ChartAxis {
                 label: "difference".to_owned(),

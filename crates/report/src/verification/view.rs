@@ -270,18 +270,17 @@ impl Number {
         } = *number;
         let digits = digits(reference, computed).max(given_digits(reference));
         let error = number.error.unwrap_or(f64::NAN);
-        // The reference itself may stand as scale with the digits that a file keeps.
-        let by_reference = (scale.abs() - reference.abs()).abs() <= 1e-9 * reference.abs();
         let relative_to = format!("{} {}", shortest(scale, 6), number.unit);
+        let needs_saying = !is_by_reference(number) && !is_absolute(number);
         Number {
             name: number.name.clone(),
-            relative_to: (!by_reference).then(|| relative_to.trim_end().to_owned()),
+            relative_to: needs_saying.then(|| relative_to.trim_end().to_owned()),
             unit: number.unit.clone(),
             reference: shortest(reference, digits),
             computed: computed.map_or_else(|| NONE.to_owned(), |value| significant(value, digits)),
-            error: relative(error),
+            error: error_of(number, error),
             tolerance: match number.passed {
-                Some(_) => tolerance(number.tolerance),
+                Some(_) => error_of(number, number.tolerance),
                 None => NONE.to_owned(),
             },
             share: match number.passed {
@@ -301,7 +300,7 @@ impl Figure {
             relative(curve.error),
         )];
         if curve.passed.is_some() {
-            facts.push(("tolerance", tolerance(curve.tolerance)));
+            facts.push(("tolerance", relative(curve.tolerance)));
             facts.push((
                 "share of the tolerance",
                 share(curve.error / curve.tolerance),
@@ -346,27 +345,32 @@ impl Figure {
 fn worst(case: &VerifiedCase) -> Option<Worst> {
     let numbers = case.numbers.iter().filter_map(|number| {
         let error = number.error.unwrap_or(f64::NAN);
-        Some((&number.name, error, number.tolerance, number.passed?))
+        let texts = [error, number.tolerance].map(|value| error_of(number, value));
+        Some((
+            &number.name,
+            texts,
+            error / number.tolerance,
+            number.passed?,
+        ))
     });
-    let curves = case
-        .curves
-        .iter()
-        .filter_map(|curve| Some((&curve.name, curve.error, curve.tolerance, curve.passed?)));
-    let measured = numbers.chain(curves).map(|(name, error, most, passed)| {
-        let worst = Worst {
-            name: name.clone(),
-            error: relative(error),
-            tolerance: tolerance(most),
-            share: share(error / most),
-        };
-        // No number at all is worse than any.
-        let ratio = if (error / most).is_nan() {
-            f64::INFINITY
-        } else {
-            error / most
-        };
-        (!passed, ratio, worst)
+    let curves = case.curves.iter().filter_map(|curve| {
+        let texts = [curve.error, curve.tolerance].map(relative);
+        let ratio = curve.error / curve.tolerance;
+        Some((&curve.name, texts, ratio, curve.passed?))
     });
+    let measured = numbers
+        .chain(curves)
+        .map(|(name, [error, tolerance], ratio, passed)| {
+            let worst = Worst {
+                name: name.clone(),
+                error,
+                tolerance,
+                share: share(ratio),
+            };
+            // No number at all is worse than any.
+            let ratio = if ratio.is_nan() { f64::INFINITY } else { ratio };
+            (!passed, ratio, worst)
+        });
     let orders = case.convergences.iter().map(|found| {
         let worst = Worst {
             name: found.name.clone(),
@@ -380,6 +384,30 @@ fn worst(case: &VerifiedCase) -> Option<Worst> {
         .chain(orders)
         .max_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)))
         .map(|found| found.2)
+}
+
+/// Whether the error is relative to the reference; that may stand as scale with the digits that a
+/// file keeps.
+fn is_by_reference(number: &VerifiedNumber) -> bool {
+    let (scale, reference) = (number.scale.abs(), number.reference.abs());
+    (scale - reference).abs() <= 1e-9 * reference
+}
+
+/// Whether the error is one in the unit of the number itself.
+fn is_absolute(number: &VerifiedNumber) -> bool {
+    number.scale.abs() == 1.0 && !is_by_reference(number)
+}
+
+/// An error or tolerance of a number, with its unit where it has one.
+fn error_of(number: &VerifiedNumber, error: f64) -> String {
+    if !is_absolute(number) || number.unit.is_empty() || !error.is_finite() {
+        return relative(error);
+    }
+    let text = match error {
+        _ if (1e-3..1e5).contains(&error) => significant(error, 2),
+        _ => relative(error),
+    };
+    format!("{text} {}", number.unit)
 }
 
 /// Takes what all errors are relative to out of the rows, where it is the same in all of several.
@@ -433,10 +461,6 @@ fn power(value: f64) -> String {
         "{mantissa}×10{}",
         crate::number::raised(exponent.unwrap_or_default())
     )
-}
-
-fn tolerance(value: f64) -> String {
-    relative(value)
 }
 
 /// Error over tolerance in percent.
