@@ -17,13 +17,17 @@ const COLOURS: [Colour; 7] = [
 const BLUE: Colour = [0x00, 0x72, 0xb2];
 const VERMILION: Colour = [0xd5, 0x5e, 0x00];
 
-/// Dashes, so that curves stay apart without colour.
-const DASHES: [&[f64]; 5] = [
+/// Dashes, so that curves stay apart without colour. Their count has no factor in common with that
+/// of the colours, so that both together repeat late.
+const DASHES: [&[f64]; 8] = [
     &[],
     &[9.0, 3.0],
     &[3.0, 2.0],
     &[10.0, 3.0, 2.5, 3.0],
     &[14.0, 3.0, 2.5, 3.0, 2.5, 3.0],
+    &[18.0, 5.0],
+    &[2.0, 5.0],
+    &[8.0, 2.5, 8.0, 8.0],
 ];
 const LONG_DASH: &[f64] = &[7.0, 5.0];
 const DOTS: &[f64] = &[2.0, 3.0];
@@ -98,4 +102,26 @@ fn polygon((x, y): (f64, f64), radius: f64, corners: usize, turn: f64) -> Vec<(f
         .map(|corner| (corner as f64 + turn) * angle)
         .map(|angle| (x + radius * angle.cos(), y + radius * angle.sin()))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn eight_curves_differ_without_colour_and_fifty_with_it() {
+        let pens: Vec<Pen> = (0..56)
+            .map(|index| pen(Look::Numbered, index, 100))
+            .collect();
+        for (index, one) in pens.iter().enumerate() {
+            for (other, another) in pens.iter().enumerate().take(index) {
+                assert_ne!(one, another, "{index} and {other}");
+                let near = index < DASHES.len();
+                assert!(
+                    !near || one.stroke.dash != another.stroke.dash,
+                    "{index} and {other}"
+                );
+            }
+        }
+    }
 }
