@@ -56,5 +56,6 @@ pub use summary::{
     Extent, LineSummary, Located, Status, Summary,
 };
 pub use verification::{
-    Verification, VerifiedCase, VerifiedConvergence, VerifiedCurve, VerifiedNumber,
+    Verification, VerifiedCase, VerifiedConvergence, VerifiedCurve, VerifiedEstimate,
+    VerifiedNumber,
 };

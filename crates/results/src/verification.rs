@@ -11,8 +11,33 @@ pub struct Verification {
     pub catenix_version: String,
     /// Whether every verdict is "passed".
     pub passed: bool,
+    /// Share of the error estimates of all cases that hold [-]; null without any.
+    pub estimates_that_hold: Option<f64>,
     /// Cases in the order of their folders' names.
     pub cases: Vec<VerifiedCase>,
+}
+
+impl Verification {
+    /// Share of estimates that must hold [-].
+    pub const ESTIMATES_THAT_MUST_HOLD: f64 = 0.95;
+
+    /// The outcome of a suite from those of its cases.
+    ///
+    /// It passes when every case does, and when the true error is within twice the estimate in
+    /// 95 % of the estimates.
+    pub fn new(catenix_version: &str, cases: Vec<VerifiedCase>) -> Verification {
+        let estimates = || cases.iter().flat_map(|case| &case.estimates);
+        let count = estimates().count();
+        let share = estimates().filter(|estimate| estimate.holds).count() as f64 / count as f64;
+        let estimates_that_hold = (count > 0).then_some(share);
+        Verification {
+            catenix_version: catenix_version.to_owned(),
+            passed: cases.iter().all(|case| case.passed)
+                && estimates_that_hold.is_none_or(|share| share >= Self::ESTIMATES_THAT_MUST_HOLD),
+            estimates_that_hold,
+            cases,
+        }
+    }
 }
 
 /// Outcome of one case.
@@ -38,8 +63,30 @@ pub struct VerifiedCase {
     pub curves: Vec<VerifiedCurve>,
     /// Orders of convergence.
     pub convergences: Vec<VerifiedConvergence>,
+    /// Estimated errors beside the true ones.
+    #[serde(default)]
+    pub estimates: Vec<VerifiedEstimate>,
     /// Processor time [s].
     pub cpu_seconds: f64,
+}
+
+/// The estimated error of a number with a known answer, on the mesh and with the step that a wanted
+/// accuracy chose.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct VerifiedEstimate {
+    /// Name of the number.
+    pub name: String,
+    /// Relative error that was asked for [-].
+    pub target: f64,
+    /// Elements that were chosen.
+    pub elements: usize,
+    /// Estimated error, of mesh and step together, over the scale of the result [-].
+    pub estimated: f64,
+    /// Difference from the reference over the same scale [-].
+    pub actual: f64,
+    /// Whether the true error is within twice the estimate, or as small as the digits of the
+    /// reference.
+    pub holds: bool,
 }
 
 /// A number beside its reference.

@@ -48,11 +48,7 @@ pub(crate) fn verify(args: &VerifyArgs) -> Result<Exit, Failure> {
         let _bar = progress.begin(&case.name, &interrupt);
         case.verify(&|| interrupt.requested())
     });
-    let verification = Verification {
-        catenix_version: env!("CARGO_PKG_VERSION").to_owned(),
-        passed: results.iter().all(|case| case.passed),
-        cases: results,
-    };
+    let verification = Verification::new(env!("CARGO_PKG_VERSION"), results);
     let files = match &args.report {
         Some(directory) => write_verification(&verification, directory)?,
         None => Vec::new(),

@@ -23,6 +23,29 @@ pub(crate) fn verification_text(verification: &Verification) -> String {
     for case in &verification.cases {
         text.push_str(&case_text(case));
     }
+    if let Some(share) = verification.estimates_that_hold {
+        let estimates = || verification.cases.iter().flat_map(|case| &case.estimates);
+        text.push_str(&heading("Error estimates"));
+        text.push_str(&paragraph(&format!(
+            "The true error is within twice the estimate in {:.1} % of {} estimates ({:.0} % must be).",
+            100.0 * share,
+            estimates().count(),
+            100.0 * Verification::ESTIMATES_THAT_MUST_HOLD
+        )));
+        let mut grid = Grid::new(&[0]);
+        grid.header(["exceptions", "asked for", "estimated", "true"]);
+        for estimate in estimates().filter(|estimate| !estimate.holds) {
+            grid.row([
+                estimate.name.clone(),
+                small(estimate.target),
+                small(estimate.estimated),
+                small(estimate.actual),
+            ]);
+        }
+        if share < 1.0 {
+            text.push_str(&grid.text());
+        }
+    }
     let failed: Vec<&str> = verification
         .cases
         .iter()

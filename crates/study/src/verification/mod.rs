@@ -6,6 +6,7 @@
 //! folder.
 
 mod compare;
+mod estimates;
 mod results;
 mod spec;
 
@@ -18,6 +19,7 @@ use cpu_time::ThreadTime;
 use thiserror::Error;
 
 use compare::{verified_convergence, verified_curve, verified_number};
+use estimates::verified_estimates;
 use results::Results;
 use spec::Spec;
 
@@ -154,6 +156,13 @@ impl VerificationCase {
                 Err(error) => keep(error),
             }
         }
+        let mut estimates = Vec::new();
+        for target in &self.spec.accuracies {
+            match verified_estimates(*target, &self.spec.numbers, &self.study, stop) {
+                Ok(found) => estimates.extend(found),
+                Err(error) => keep(error),
+            }
+        }
         let passed = errors.is_empty()
             && numbers.iter().all(|number| number.passed != Some(false))
             && curves.iter().all(|curve| curve.passed != Some(false))
@@ -169,6 +178,7 @@ impl VerificationCase {
             numbers,
             curves,
             convergences,
+            estimates,
             cpu_seconds: cpu.elapsed().as_secs_f64(),
         }
     }

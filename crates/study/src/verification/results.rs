@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 use catenix_engine::{ModeKind, System, find_modes, follow_path, simulate, solve_statics};
-use catenix_model::{Line, Model, StepControl, Study, all_channels};
+use catenix_model::{Line, LoadCase, Model, StepControl, Study, all_channels};
 
 use super::spec::{Analysis, Origin, Value};
 use crate::case::flow;
@@ -114,15 +114,7 @@ impl<'a> Results<'a> {
     }
 
     fn model(&self, computation: &Computation) -> Result<Model, String> {
-        let mut cases = self.study.cases.iter();
-        let case = match &computation.load_case {
-            None => cases.next(),
-            Some(name) => cases.find(|case| case.name == *name),
-        };
-        let case = case.ok_or_else(|| {
-            let name = computation.load_case.as_deref().unwrap_or_default();
-            format!("the model file has no load case '{name}'")
-        })?;
+        let case = load_case(self.study, computation.load_case.as_deref())?;
         let mut model = case.model.clone();
         for section in model.lines.iter_mut().flat_map(|line| &mut line.sections) {
             let parts = computation.split.max(1);
@@ -136,6 +128,19 @@ impl<'a> Results<'a> {
         }
         Ok(model)
     }
+}
+
+/// A load case by its name, or the first.
+pub(super) fn load_case<'s>(study: &'s Study, name: Option<&str>) -> Result<&'s LoadCase, String> {
+    let mut cases = study.cases.iter();
+    let case = match name {
+        None => cases.next(),
+        Some(name) => cases.find(|case| case.name == name),
+    };
+    case.ok_or_else(|| {
+        let name = name.unwrap_or_default();
+        format!("the model file has no load case '{name}'")
+    })
 }
 
 fn compute(model: &Model, analysis: Analysis, stop: &dyn Fn() -> bool) -> Result<Table, String> {

@@ -13,6 +13,9 @@ pub(super) struct Spec {
     pub topic: String,
     /// What is computed, and what for.
     pub summary: String,
+    /// Relative errors that are asked for, to hold the estimated errors against the true ones.
+    #[serde(default)]
+    pub accuracies: Vec<f64>,
     /// Single numbers.
     #[serde(default)]
     pub numbers: Vec<Number>,
