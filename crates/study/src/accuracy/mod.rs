@@ -85,9 +85,7 @@ pub(crate) fn refined(
     }
     let discretisation = Discretisation {
         target,
-        reached: estimates
-            .iter()
-            .all(|estimate| estimate.relative() <= target),
+        reached: estimates.iter().all(|estimate| estimate.meets(target)),
         elements: case.model.lines.iter().map(Line::element_count).sum(),
         largest_step_s: steps.and_then(|step| match step {
             StepControl::Adaptive { max, .. } => Some(max),
