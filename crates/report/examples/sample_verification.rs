@@ -14,11 +14,8 @@ use catenix_results::{
 fn main() {
     let directory = std::env::args().nth(1);
     let directory = PathBuf::from(directory.expect("usage: sample_verification DIR"));
-    let report = Verification {
-        catenix_version: "0.0.0 (made up)".into(),
-        passed: false,
-        cases: vec![cantilever(), midspan(), elastica(), arch(), hose()],
-    };
+    let cases = vec![cantilever(), midspan(), elastica(), arch(), hose()];
+    let report = Verification::new("0.0.0 (made up)", cases);
     write_verification(&report, &directory).unwrap();
 }
 
@@ -34,6 +31,7 @@ fn case(name: &str, title: &str, topic: &str) -> VerifiedCase {
         numbers: Vec::new(),
         curves: Vec::new(),
         convergences: Vec::new(),
+        estimates: Vec::new(),
         cpu_seconds: 3.21,
     }
 }
@@ -225,6 +223,7 @@ fn arch() -> VerifiedCase {
             reason: "Digits of the publication.".into(),
             passed: Some(true),
         }],
+        estimates: Vec::new(),
         cpu_seconds: 125.7,
         ..case(
             "deep-arch",

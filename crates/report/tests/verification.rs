@@ -7,7 +7,8 @@ use std::path::Path;
 
 use catenix_report::write_verification;
 use catenix_results::{
-    Verification, VerifiedCase, VerifiedConvergence, VerifiedCurve, VerifiedNumber,
+    Verification, VerifiedCase, VerifiedConvergence, VerifiedCurve, VerifiedEstimate,
+    VerifiedNumber,
 };
 use roxmltree::{Document, Node, ParsingOptions};
 
@@ -56,6 +57,38 @@ fn convergence(name: &str, passed: bool) -> VerifiedConvergence {
     }
 }
 
+fn estimate(name: &str, actual: f64, holds: bool) -> VerifiedEstimate {
+    VerifiedEstimate {
+        name: name.into(),
+        target: 0.01,
+        elements: 20,
+        estimated: 1e-3,
+        actual,
+        holds,
+    }
+}
+
+#[test]
+fn estimates_that_do_not_hold_are_listed_beside_the_share_that_does() {
+    let directory = tempfile::tempdir().unwrap();
+    let page = written(&suite(), directory.path());
+    let words = text(parse(&page).root_element());
+    assert!(
+        words.contains("50.0 % of 2 estimates; 95 % must be"),
+        "{words}"
+    );
+    assert!(
+        words.contains("tip <x>") && !words.contains("tip.z"),
+        "{words}"
+    );
+    assert!(
+        directory
+            .path()
+            .join("figures/error-estimates.svg")
+            .is_file()
+    );
+}
+
 fn case(name: &str, topic: &str) -> VerifiedCase {
     VerifiedCase {
         name: name.into(),
@@ -68,6 +101,7 @@ fn case(name: &str, topic: &str) -> VerifiedCase {
         numbers: Vec::new(),
         curves: Vec::new(),
         convergences: Vec::new(),
+        estimates: Vec::new(),
         cpu_seconds: 1.5,
     }
 }
@@ -82,6 +116,10 @@ fn suite() -> Verification {
         ],
         curves: vec![curve("history", 1000, Some(true)), curve("few", 5, None)],
         convergences: vec![convergence("mesh", true)],
+        estimates: vec![
+            estimate("tip.z", 1e-4, true),
+            estimate("tip <x>", 5e-3, false),
+        ],
         ..case("good", "Vibration")
     };
     let nothing = VerifiedNumber {
@@ -157,6 +195,7 @@ fn suite() -> Verification {
     Verification {
         catenix_version: "1.2.3".into(),
         passed: false,
+        estimates_that_hold: Some(0.5),
         // A name that differs by letters which are no part of file names, and an empty case.
         cases: vec![
             good,
@@ -357,6 +396,7 @@ fn an_empty_suite_is_a_page_too() {
     let report = Verification {
         catenix_version: "1.2.3".into(),
         passed: true,
+        estimates_that_hold: None,
         cases: Vec::new(),
     };
     let page = written(&report, directory.path());

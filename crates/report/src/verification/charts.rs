@@ -1,6 +1,6 @@
 //! Charts of a verification: computed against reference, and errors on refined meshes.
 
-use catenix_results::{VerifiedConvergence, VerifiedCurve};
+use catenix_results::{VerifiedConvergence, VerifiedCurve, VerifiedEstimate};
 
 use crate::figure::{Chart, ChartAxis, Curve, Look, Panel, Scale};
 use crate::number::{significant, split_unit};
@@ -83,6 +83,36 @@ pub(super) fn convergence_chart(found: &VerifiedConvergence) -> Chart {
     );
     chart.width = ERRORS_WIDTH;
     chart.panels[0].height = 250.0;
+    chart
+}
+
+/// True over estimated errors by size, against the share of the estimates that are as good or better.
+pub(super) fn estimates_chart(estimates: &[&VerifiedEstimate]) -> Chart {
+    let mut ratios: Vec<f64> = estimates
+        .iter()
+        .map(|estimate| estimate.actual / estimate.estimated)
+        .filter(|ratio| Scale::Logarithmic.holds(*ratio))
+        .collect();
+    ratios.sort_by(f64::total_cmp);
+    // Estimates that are not drawn, because the true error is zero, are the best ones.
+    let undrawn = estimates.len() - ratios.len();
+    let share = |k: usize| 100.0 * (undrawn + k + 1) as f64 / estimates.len() as f64;
+    let points = ratios
+        .iter()
+        .enumerate()
+        .map(|(k, ratio)| (share(k), *ratio));
+    let curves = vec![
+        Curve::new("all estimates, by size", points.collect()).with_look(Look::Computed),
+        Curve::new("twice the estimate", vec![(0.0, 2.0), (100.0, 2.0)]).with_look(Look::Bound),
+    ];
+    let mut chart = Chart::new(
+        "True errors and their estimates",
+        ChartAxis::linear("share of the estimates", "%"),
+        ChartAxis::logarithmic("true error / estimated error", "-"),
+        curves,
+    );
+    chart.width = WIDTH;
+    chart.panels[0].height = 230.0;
     chart
 }
 

@@ -3,12 +3,13 @@
 use std::collections::BTreeSet;
 
 use catenix_results::{
-    Verification, VerifiedCase, VerifiedConvergence, VerifiedCurve, VerifiedNumber,
+    Verification, VerifiedCase, VerifiedConvergence, VerifiedCurve, VerifiedEstimate,
+    VerifiedNumber,
 };
 use minijinja::Value;
 use serde::Serialize;
 
-use super::charts::{convergence_chart, curve_chart};
+use super::charts::{convergence_chart, curve_chart, estimates_chart};
 use crate::figure::{Chart, Drawing};
 use crate::markdown;
 use crate::number::{shortest, significant};
@@ -24,7 +25,30 @@ pub(super) struct Page {
     verdict: Verdict,
     counts: Vec<Count>,
     cpu_time: String,
+    estimates: Option<Estimates>,
     topics: Vec<Topic>,
+}
+
+/// How well errors are estimated where the answer is known.
+#[derive(Debug, Serialize)]
+struct Estimates {
+    count: usize,
+    /// Share that holds [%].
+    share: String,
+    /// Share that must hold [%].
+    least_share: String,
+    verdict: Verdict,
+    svg: Value,
+    exceptions: Vec<EstimateRow>,
+}
+
+#[derive(Debug, Serialize)]
+struct EstimateRow {
+    case: String,
+    name: String,
+    target: String,
+    estimated: String,
+    actual: String,
 }
 
 /// Cases of one kind of problem.
@@ -158,9 +182,41 @@ pub(super) fn page(report: &Verification) -> (Page, Vec<(String, Drawing)>) {
             ),
         ],
         cpu_time: cpu_time(cases.iter().map(|case| case.cpu_seconds).sum()),
+        estimates: Estimates::new(report, &mut drawings),
         topics,
     };
     (page, drawings)
+}
+
+impl Estimates {
+    fn new(report: &Verification, drawings: &mut Vec<(String, Drawing)>) -> Option<Self> {
+        let share = report.estimates_that_hold?;
+        let cases = &report.cases;
+        let estimates: Vec<&VerifiedEstimate> =
+            cases.iter().flat_map(|case| &case.estimates).collect();
+        let drawing = estimates_chart(&estimates).draw();
+        let svg = Value::from_safe_string(drawing.to_svg());
+        drawings.push(("error-estimates".to_owned(), drawing));
+        let exceptions = cases.iter().flat_map(|case| {
+            let failed = case.estimates.iter().filter(|estimate| !estimate.holds);
+            failed.map(|estimate| EstimateRow {
+                case: case.name.clone(),
+                name: estimate.name.clone(),
+                target: significant(estimate.target, 2),
+                estimated: significant(estimate.estimated, 2),
+                actual: significant(estimate.actual, 2),
+            })
+        });
+        let least = Verification::ESTIMATES_THAT_MUST_HOLD;
+        Some(Estimates {
+            count: estimates.len(),
+            share: format!("{:.1}", 100.0 * share),
+            least_share: format!("{:.0}", 100.0 * least),
+            verdict: Verdict::of(Some(share >= least)),
+            svg,
+            exceptions: exceptions.collect(),
+        })
+    }
 }
 
 /// Names that were given to parts of the page and to files.
