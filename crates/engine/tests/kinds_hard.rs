@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use catenix_engine::{StaticsError, System, solve_statics};
 use catenix_model::ChannelTarget;
 
-use common::{G, WATER, assert_near, model, run};
+use common::{G, WATER, assert_near, model, run, statics};
 
 #[test]
 fn a_stiff_jumper_in_deep_water_is_a_beam() {
@@ -120,4 +120,38 @@ fn a_hinge_about_the_vertical_leaves_a_motion_free() {
         declination < 1e-3 && hanging.warnings.is_empty(),
         "{declination} deg"
     );
+}
+
+#[test]
+fn a_stiff_line_under_small_loads_is_warned_of_round_off() {
+    let beam = |stiffness: &str| {
+        let text = format!(
+            r#"
+            environment.gravity = 0
+            [line_types.bar]
+            kind = "general"
+            outer_diameter = "0.01 m"
+            mass = "1 kg/m"
+            axial_stiffness = "{stiffness}"
+            bending_stiffness = "100 N m^2"
+            [anchors.wall]
+            position = [0, 0, 0]
+            [lines.beam]
+            sections = [{{ type = "bar", length = "2 m", elements = 40 }}]
+            end_a = {{ to = "wall", joint = "fixed", direction = [1, 0, 0] }}
+            [loads.tip]
+            on = "beam"
+            at = "2 m"
+            force = [0, 0, "1 N"]
+            "#
+        );
+        statics(&model(&text)).warnings
+    };
+    // 4 epsilon x 2 m x 30 EA / l is 1e-3 N, and 1e-6 N with a thousandth of the stiffness.
+    let told = beam("1 GN");
+    assert!(
+        told.iter().any(|text| text.contains("round-off")),
+        "{told:?}"
+    );
+    assert!(beam("1 MN").is_empty());
 }

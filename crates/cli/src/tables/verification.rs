@@ -56,6 +56,7 @@ pub(crate) fn verification_text(verification: &Verification) -> String {
     let time: f64 = verification.cases.iter().map(|case| case.cpu_seconds).sum();
     text.push_str(&match failed.as_slice() {
         [] if !verification.passed => "\nToo many error estimates FAILED.\n".to_owned(),
+        [] if count == 1 => format!("\nThe case passed, in {time:.1} s of processor time.\n"),
         [] => format!("\nAll {count} cases passed, in {time:.1} s of processor time.\n"),
         failed => format!(
             "\n{} of {count} cases FAILED: {}.\n",

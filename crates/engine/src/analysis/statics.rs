@@ -169,6 +169,7 @@ pub(super) fn find_equilibrium<'a>(
         ..
     } = search;
     let mut warnings = Vec::new();
+    warnings.extend(system.round_off_warning());
     match free_motion::find(&mut solver, &mut state) {
         Some(free) if !free.blames_a_joint() => warnings.push(free.warning(system)),
         Some(free) => {

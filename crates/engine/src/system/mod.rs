@@ -55,6 +55,9 @@ pub enum SystemError {
     },
 }
 
+/// Share of the reference force beyond which a residual that round-off leaves is told to the user.
+const WORRYING_ROUND_OFF: f64 = 1e-5;
+
 /// The assembled, immutable system.
 #[derive(Debug, Clone)]
 pub struct System {
@@ -316,6 +319,20 @@ impl System {
     /// Source: docs/theory/solver.md, eq. (8).
     pub fn allowed_residual(&self, tolerance: f64) -> f64 {
         (tolerance * self.reference_force).max(self.residual_floor)
+    }
+
+    /// What to tell the user where round-off leaves residuals that may matter.
+    pub(crate) fn round_off_warning(&self) -> Option<String> {
+        let share = self.residual_floor / self.reference_force;
+        (share > WORRYING_ROUND_OFF).then(|| {
+            format!(
+                "round-off in the stiffest springs leaves residual forces of up to {:.1e} N, {share:.0e} \
+                 of the weights and loads: results that depend on smaller forces are not to be \
+                 trusted. A smaller axial stiffness, longer elements or an origin closer to the \
+                 system lower it",
+                self.residual_floor
+            )
+        })
     }
 
     /// Force that tolerances are relative to: weight of everything in air [N].
