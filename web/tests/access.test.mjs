@@ -60,7 +60,7 @@ test("keys work, are listed, and can be kept to the scene", async () => {
   const turned = await at();
   assert.ok(Math.hypot(turned.x - first.x, turned.y - first.y) > 1, "arrow keys turn the view");
   await page.keyboard.press("n");
-  assert.equal(await page.inputValue("#node"), "1");
+  await page.waitForFunction(() => document.querySelector("#node").value === "1");
   await page.keyboard.press("?");
   assert.ok(await page.isVisible("#help-dialog"));
   assert.ok((await page.$$("#keys tr")).length > 15);

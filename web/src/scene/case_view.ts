@@ -120,7 +120,11 @@ export class CaseView {
     const { x: sx, y: sy } = this.shift;
     const enlarge = (value: number, base: number) => base + exaggeration * (value - base);
     for (const [index, { place, nodes }] of frame.lines.entries()) {
-      const out = this.lines[index].nodes;
+      const out = this.lines[index]?.nodes;
+      if (!out) {
+        // The case has begun since this view was made; the view with its lines is on the way.
+        continue;
+      }
       const statics = this.data.statics.get(place.name);
       for (let k = 0, s = 0; k < nodes.length; k += 4, s += 3) {
         let [x, y, z] = [nodes[k], nodes[k + 1], nodes[k + 2]];
@@ -187,8 +191,8 @@ export class CaseView {
 
   private pointAt(line: number, arc: number): Vector3 {
     const arcs = this.data.arcLengths.get(this.data.description.lines[line].name);
-    const nodes = this.lines[line].nodes;
-    if (!arcs) {
+    const nodes = this.lines[line]?.nodes;
+    if (!arcs || !nodes) {
       return new Vector3();
     }
     let k = 0;

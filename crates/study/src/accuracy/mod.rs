@@ -11,13 +11,12 @@ mod headline;
 mod mesh;
 
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
 
 use catenix_engine::{System, simulate, solve_statics};
 use catenix_model::{Line, LoadCase, Model, Reference, StepControl};
 use catenix_results::{CaseError, Discretisation, ErrorEstimate};
 
-use crate::case::{Halt, dynamics_halt, statics_halt, system_of};
+use crate::case::{Halt, dynamics_halt, flow, statics_halt, system_of};
 use crate::watch::Watch;
 use headline::{Collector, Headline};
 use mesh::{Density, remeshed};
@@ -27,11 +26,11 @@ const FIRST_ELEMENTS: f64 = 16.0;
 /// Rounds of adapting the mesh to the static shape.
 const ROUNDS: usize = 3;
 /// Most splits of an element.
-const MOST_SPLITS: usize = 9;
+const MOST_SPLITS: usize = 7;
 /// Most halvings of the step.
-const MOST_HALVINGS: usize = 9;
+const MOST_HALVINGS: usize = 8;
 /// Most elements of a mesh that is tried.
-const MOST_ELEMENTS: usize = 200_000;
+const MOST_ELEMENTS: usize = 50_000;
 /// Local error that the coarsest steps may have, over the system's reference length.
 const COARSEST_STEP_ERROR: f64 = 2e-4;
 /// Largest of the coarsest steps [s].
@@ -252,10 +251,10 @@ impl<'w> Family<'w> {
             let found = list.iter().find(|headline| headline.name == name);
             found.map(|headline| headline.value)
         };
-        let estimates = fine.iter().map(|headline| {
+        let estimates = fine.iter().filter_map(|headline| {
             let value_of = |list: &[Headline]| find(list, &headline.name).unwrap_or(f64::NAN);
             let middle = value_of(&coarse);
-            ErrorEstimate {
+            let estimate = ErrorEstimate {
                 result: headline.name.clone(),
                 unit: headline.unit.to_owned(),
                 value: headline.value,
@@ -273,7 +272,9 @@ impl<'w> Family<'w> {
                     )
                 }),
                 steers: headline.steers,
-            }
+            };
+            // A range that is too small to be a headline result on some member has no estimate.
+            estimate.relative().is_finite().then_some(estimate)
         });
         Ok(estimates.collect())
     }
@@ -315,13 +316,6 @@ fn compute<'m>(
     references: &'m [Reference],
     watch: &dyn Watch,
 ) -> Result<Collector<'m>, Halt> {
-    let flow = |stop: bool| {
-        if stop {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    };
     let system = system_of(model).map_err(Halt::Failed)?;
     let system: &System = &system;
     let start = solve_statics(system, &mut |_| flow(watch.stop())).map_err(statics_halt)?;
