@@ -27,10 +27,15 @@ export function compute(model, name) {
   return out;
 }
 
+/** Programs that run: a test that fails leaves its own behind, and the file would never end. */
+const running = new Set();
+
 /** Starts the program and waits for the viewer's link. */
 export async function start(...args) {
   const child = spawn(program, [...args, "--no-open"], { stdio: ["ignore", "ignore", "pipe"] });
   let text = "";
+  running.add(child);
+  child.on("exit", () => running.delete(child));
   const ended = new Promise((resolve) => child.on("exit", resolve));
   const url = await new Promise((resolve, reject) => {
     child.stderr.on("data", (data) => {
@@ -79,6 +84,9 @@ export async function openPage(url, options = {}) {
 export async function closeBrowser() {
   await browser?.close();
   browser = null;
+  for (const child of running) {
+    child.kill("SIGKILL");
+  }
 }
 
 /** Waits until the scene shows all that it should. */

@@ -14,7 +14,7 @@ pub struct Chart {
     pub panels: Vec<Panel>,
     /// Remark below the legend; may be empty.
     pub note: String,
-    /// Width of the whole drawing [pixels].
+    /// Width of the whole drawing, in pixels.
     pub width: f64,
 }
 
@@ -50,7 +50,7 @@ pub struct Panel {
     pub y: ChartAxis,
     /// The curves, painted in order.
     pub curves: Vec<Curve>,
-    /// Height between the axes [pixels].
+    /// Height between the axes, in pixels.
     pub height: f64,
 }
 
