@@ -1,8 +1,8 @@
 //! One connection: request, answer, and again.
 
-use std::io::Write;
+use std::io::{Read, Write};
 use std::net::{Shutdown, TcpStream};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crate::request::{self, RequestFault};
 use crate::response::{Response, Status};
@@ -11,6 +11,10 @@ use crate::routes::Site;
 /// Longest silence between two requests, and longest wait for a reader that does not take its
 /// answer.
 const IDLE: Duration = Duration::from_secs(30);
+/// Longest time for which the rest of a refused request is read.
+const DISCARD_TIME: Duration = Duration::from_secs(1);
+/// Most bytes of a refused request that are read.
+const DISCARD_BYTES: usize = 8 << 20;
 
 /// Answers requests until the other side ends, stays silent, or sends what is not allowed.
 pub(crate) fn serve(mut stream: TcpStream, site: &Site) {
@@ -59,4 +63,20 @@ fn end(mut stream: TcpStream, fault: &RequestFault) {
     let _ = Response::error(status, code, message).write(&mut stream, false, false);
     let _ = stream.flush();
     let _ = stream.shutdown(Shutdown::Write);
+    discard_rest(&mut stream);
+}
+
+/// Reads what is still on its way, for a while: closed with unread bytes, the connection would be
+/// reset, and the answer lost.
+fn discard_rest(stream: &mut TcpStream) {
+    let until = Instant::now() + DISCARD_TIME;
+    let mut discarded = 0;
+    let mut bytes = [0; 16 * 1024];
+    let _ = stream.set_read_timeout(Some(DISCARD_TIME));
+    while discarded < DISCARD_BYTES && Instant::now() < until {
+        match stream.read(&mut bytes) {
+            Ok(0) | Err(_) => return,
+            Ok(count) => discarded += count,
+        }
+    }
 }
