@@ -305,7 +305,7 @@ fn richardson(fine: f64, coarse: f64, coarser: Option<f64>) -> f64 {
     let before = (coarse - coarser).abs();
     let ratio = before / last.max(1e-300);
     // Orders from one half to two are taken as they are; beyond, second order is the safe guess,
-    // and a change that is small by chance is not believed to be smaller than a sixteenth.
+    // and a change that is small by chance leaves 3 / 16 of the second-order estimate.
     let gain = ratio.clamp(std::f64::consts::SQRT_2, 4.0) - 1.0;
     SAFETY * (last / gain).max(before / 64.0)
 }
