@@ -256,11 +256,10 @@ impl Bdf {
             } = &mut self.past[j];
             let mut largest = 0.0f64;
             for (k, travel) in travel.iter_mut().enumerate() {
-                let dx = configuration.position[k] - current.position[k];
-                let turn = configuration.rotation[k] * current.rotation[k].transpose();
-                let theta = so3::log(&turn);
-                largest = largest.max(theta.norm_squared());
-                *travel = Vector6::new(dx.x, dx.y, dx.z, theta.x, theta.y, theta.z);
+                *travel = configuration.difference_at(current, k);
+                if k >= current.pair_count() {
+                    largest = largest.max(travel.fixed_rows::<3>(3).norm_squared());
+                }
             }
             if largest > MOST_ROTATION * MOST_ROTATION {
                 self.past_count = j;
@@ -350,11 +349,14 @@ impl BdfStage {
     ///
     /// Source: docs/theory/integration.md, eq. (12).
     fn update(&mut self) {
+        let pairs = self.state.configuration.pair_count();
         for k in 0..self.travel.len() {
-            let (rate, spin) = self.rates(k);
-            let turn: Vector3 = self.travel[k].fixed_rows::<3>(3).into();
-            let spin = so3::left_jacobian(&turn) * spin;
-            let velocity = Vector6::new(rate[0], rate[1], rate[2], spin.x, spin.y, spin.z);
+            let (mut velocity, spin) = self.rates(k);
+            if k >= pairs {
+                let turn: Vector3 = self.travel[k].fixed_rows::<3>(3).into();
+                let spin = so3::left_jacobian(&turn) * spin;
+                velocity.fixed_rows_mut::<3>(3).copy_from(&spin);
+            }
             self.trial.velocity[k] = velocity;
             self.trial.acceleration[k] = velocity * self.leading + self.past_acceleration[k];
         }
@@ -377,7 +379,8 @@ impl Stage for BdfStage {
 
     /// Source: docs/theory/integration.md, eq. (13).
     fn linearise(&mut self) {
-        for k in 0..self.travel.len() {
+        // Points do not turn: at pairs both stay the identity.
+        for k in self.state.configuration.pair_count()..self.travel.len() {
             let turn: Vector3 = self.travel[k].fixed_rows::<3>(3).into();
             let (_, spin) = self.rates(k);
             let inverse = so3::left_jacobian_inverse(&turn);

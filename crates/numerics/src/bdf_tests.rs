@@ -1,7 +1,7 @@
 use approx::assert_relative_eq;
 
 use super::*;
-use crate::test_systems::{FIXED, Tumbler, distance, drive};
+use crate::test_systems::{FIXED, Tumbler, assert_pairs_move_like_frames, distance, drive};
 
 /// An integrator whose past are states of the exact motion, `step` apart, oldest first; it starts
 /// at the last of them and at the highest order.
@@ -189,4 +189,9 @@ fn a_step_that_does_not_converge_leaves_the_state_alone() {
     let failure = bdf.advance(&mut system, 0.1, 0.1, &settings).unwrap_err();
     assert_eq!(failure.iterations, 2);
     assert_eq!(bdf.state(), &state);
+}
+
+#[test]
+fn pairs_of_points_move_like_frames() {
+    assert_pairs_move_like_frames(|state| Box::new(Bdf::new(5, state)));
 }

@@ -220,7 +220,10 @@ impl Stage for AlphaStage {
     }
 
     fn linearise(&mut self) {
-        for (weight, travel) in self.rotation_weights.iter_mut().zip(&self.travel) {
+        let pairs = self.state.configuration.pair_count();
+        let weights = self.rotation_weights.iter_mut().zip(&self.travel);
+        // Points do not turn: at pairs the weights stay the identity.
+        for (weight, travel) in weights.skip(pairs) {
             *weight = so3::left_jacobian_inverse(&travel.fixed_rows::<3>(3).into_owned());
         }
     }
@@ -249,7 +252,7 @@ impl Stage for AlphaStage {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_systems::{Tumbler, distance, drive};
+    use crate::test_systems::{Tumbler, assert_pairs_move_like_frames, distance, drive};
     use crate::{NewtonSettings, Vector3};
 
     fn run(rho: f64, steps: &[f64]) -> MotionState {
@@ -322,6 +325,12 @@ mod tests {
         let failure = alpha.advance(&mut system, 0.1, 0.1, &settings).unwrap_err();
         assert_eq!(failure.iterations, 2);
         assert_eq!(alpha.state(), &state);
+    }
+
+    #[test]
+    fn pairs_of_points_move_like_frames() {
+        let parameters = AlphaParameters::with_spectral_radius(0.8);
+        assert_pairs_move_like_frames(|state| Box::new(GeneralisedAlpha::new(parameters, state)));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::{Configuration, Matrix3, Vector6};
 pub struct MotionState {
     /// Positions and rotations.
     pub configuration: Configuration,
-    /// Velocity and angular velocity, (n) [m/s, rad/s].
+    /// Velocity and angular velocity, (n) [m/s, rad/s]; of pairs, the velocities of both points.
     pub velocity: Vec<Vector6>,
     /// Acceleration and angular acceleration, (n) [m/s2, rad/s2].
     pub acceleration: Vec<Vector6>,
@@ -33,7 +33,7 @@ pub struct TangentWeights<'a> {
     /// d acceleration / d increment [1/s2].
     pub acceleration: f64,
     /// Per frame: d (rotation of the step) / d (rotation increment), the factor on the rotational
-    /// part of both; `None` stands for the identity.
+    /// part of both, (n); the identity at pairs of points. `None` stands for identities throughout.
     pub rotation: Option<&'a [Matrix3]>,
 }
 

@@ -1,9 +1,10 @@
 //! Mathematics without physics: rotations, 6 x 6 blocks, the block solver for chains that meet at
 //! junctions, its eigenvalues, and the implicit time integrator.
 //!
-//! Every unknown is a *frame*: three translations and three rotations. Vectors over frames are
-//! slices of [`Vector6`], translation first, all components in the global axes. Rotations are
-//! updated by left multiplication: an increment `theta` turns `R` into `exp(theta) R`.
+//! Every unknown is a block of six: a *frame*, three translations and three rotations, or a pair of
+//! points. Vectors over frames are slices of [`Vector6`], translation (or first point) first, all
+//! components in the global axes. Rotations are updated by left multiplication: an increment
+//! `theta` turns `R` into `exp(theta) R`.
 
 mod bdf;
 mod block;
@@ -35,5 +36,5 @@ pub use newton::{NewtonFailure, NewtonSettings};
 pub type Vector3 = nalgebra::Vector3<f64>;
 /// Three by three.
 pub type Matrix3 = nalgebra::Matrix3<f64>;
-/// Translation part first, then rotation part.
+/// Translation part first, then rotation part; at pairs of points, one after the other.
 pub type Vector6 = nalgebra::Vector6<f64>;
