@@ -1,5 +1,38 @@
 //! Settings of the analyses.
 
+/// How lines become unknowns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum FormulationKind {
+    /// Discrete elements: rigid elements, joined by springs of six components.
+    Dem,
+    /// Finite elements: corotational beams of two nodes.
+    Fem,
+    /// Finite elements: geometrically exact beams of two nodes.
+    FemExact,
+    /// Lumped masses, joined by axial springs, with bending over three nodes; no torsion.
+    Lumped,
+}
+
+impl FormulationKind {
+    /// All of them.
+    pub const ALL: [FormulationKind; 4] = [
+        FormulationKind::Dem,
+        FormulationKind::Fem,
+        FormulationKind::FemExact,
+        FormulationKind::Lumped,
+    ];
+
+    /// The word in the model file.
+    pub fn word(self) -> &'static str {
+        match self {
+            FormulationKind::Dem => "dem",
+            FormulationKind::Fem => "fem",
+            FormulationKind::FemExact => "fem-exact",
+            FormulationKind::Lumped => "lumped",
+        }
+    }
+}
+
 /// How static equilibrium is sought.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StaticsSettings {

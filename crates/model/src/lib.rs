@@ -16,7 +16,8 @@ mod output;
 mod path;
 
 pub use analysis::{
-    DynamicsSettings, IntegratorSettings, ModeRange, ModeSettings, StaticsSettings, StepControl,
+    DynamicsSettings, FormulationKind, IntegratorSettings, ModeRange, ModeSettings,
+    StaticsSettings, StepControl,
 };
 pub use body::{Body, Vessel};
 pub use environment::{Current, CurrentPoint, Environment, Seabed, Water};
@@ -39,6 +40,8 @@ pub use path::{PathSettings, PathStop};
 pub struct Model {
     /// Title of the model file.
     pub title: String,
+    /// How lines become unknowns.
+    pub formulation: FormulationKind,
     /// Water, current and seabed.
     pub environment: Environment,
     /// Cross sections that the lines' sections refer to by index.

@@ -76,7 +76,7 @@ impl Topology {
 }
 
 /// The iteration matrix on a [`Topology`].
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct BlockMatrix {
     /// Diagonal block of each frame, (frame_count).
     pub diagonal: Vec<Block6>,
@@ -135,6 +135,35 @@ impl BlockMatrix {
             head: pairs(&self.head),
             tail: pairs(&self.tail),
         }
+    }
+
+    /// self <- a + factor b, all on the same topology.
+    pub fn set_sum(&mut self, a: &BlockMatrix, factor: f64, b: &BlockMatrix) {
+        let sum = |out: &mut [Block6], a: &[Block6], b: &[Block6]| {
+            for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
+                *out = a.plus(factor, b);
+            }
+        };
+        sum(&mut self.diagonal, &a.diagonal, &b.diagonal);
+        sum(&mut self.upper, &a.upper, &b.upper);
+        sum(&mut self.lower, &a.lower, &b.lower);
+        sum(
+            self.head.as_flattened_mut(),
+            a.head.as_flattened(),
+            b.head.as_flattened(),
+        );
+        sum(
+            self.tail.as_flattened_mut(),
+            a.tail.as_flattened(),
+            b.tail.as_flattened(),
+        );
+    }
+
+    /// y <- A x
+    pub fn times(&self, topology: &Topology, x: &[Vector6], y: &mut [Vector6]) {
+        y.fill(Vector6::zeros());
+        self.subtract_times(topology, x, y);
+        y.iter_mut().for_each(|force| *force *= -1.0);
     }
 
     /// y <- y - A x, the residual of a solution.

@@ -37,6 +37,14 @@ pub struct TangentWeights<'a> {
     pub rotation: Option<&'a [Matrix3]>,
 }
 
+impl TangentWeights<'_> {
+    /// Factor on the rotational part for frame `k`.
+    #[inline]
+    pub fn turn(&self, k: usize) -> Matrix3 {
+        self.rotation.map_or(Matrix3::identity(), |list| list[k])
+    }
+}
+
 /// The largest residual and where it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ResidualSize {

@@ -2,8 +2,8 @@
 
 use catenix_numerics::{Matrix3, Vector3};
 
-use super::assembly::frame_motion;
-use super::{EnergyTerms, StepView};
+use super::frames::{FrameMotion, frame_motion};
+use super::{EnergyTerms, Frame, StepView};
 
 /// Momentum of the structure: elements, bodies and the masses of lumps, without added mass.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,30 +14,43 @@ pub struct Momentum {
     pub angular: Vector3,
 }
 
+impl Momentum {
+    /// Adds a linear momentum at a position.
+    pub(crate) fn add_point(&mut self, position: &Vector3, own: &Vector3) {
+        self.linear += own;
+        self.angular += position.cross(own);
+    }
+
+    /// Adds a rigid frame.
+    pub(crate) fn add_frame(&mut self, frame: &Frame, m: &FrameMotion) {
+        self.add_point(&m.position, &(m.velocity * frame.mass));
+        let inertia = Matrix3::from_diagonal(&frame.inertia);
+        self.angular += m.rotation * (inertia * (m.rotation.transpose() * m.spin));
+    }
+}
+
 impl StepView<'_> {
     /// Momentum of the structure.
     ///
     /// Source: docs/theory/energy.md, eq. (4).
     pub fn momentum(&self) -> Momentum {
         let system = self.solver.system;
-        let mut linear = Vector3::zeros();
-        let mut angular = Vector3::zeros();
-        for (k, frame) in system.frames.iter().enumerate() {
-            let m = frame_motion(self.state, k);
-            let inertia = Matrix3::from_diagonal(&frame.inertia);
-            let own = m.velocity * frame.mass;
-            linear += own;
-            angular +=
-                m.position.cross(&own) + m.rotation * (inertia * (m.rotation.transpose() * m.spin));
+        let at = self.solver.instant(self.time, self.state);
+        let mut momentum = Momentum {
+            linear: Vector3::zeros(),
+            angular: Vector3::zeros(),
+        };
+        self.solver.lines.add_momentum(&at, &mut momentum);
+        for k in system.body_frame(0)..system.frames.len() {
+            momentum.add_frame(&system.frames[k], &frame_motion(self.state, k));
         }
         for lump in &system.lumps {
             let m = frame_motion(self.state, lump.frame);
             let arm = m.rotation * lump.arm;
             let own = (m.velocity + m.spin.cross(&arm)) * lump.lump.mass;
-            linear += own;
-            angular += (m.position + arm).cross(&own);
+            momentum.add_point(&(m.position + arm), &own);
         }
-        Momentum { linear, angular }
+        momentum
     }
 
     /// Energies of the system and the powers that change them.

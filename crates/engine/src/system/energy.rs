@@ -2,18 +2,16 @@
 
 use catenix_numerics::MotionState;
 
-use super::assembly::frame_motion;
-use super::frames::{self, LoadPowers};
+use super::frames::{self, LoadPowers, frame_motion};
 use super::loads;
 use super::solver::SystemSolver;
-use super::{Carrier, Mount};
 
 /// Energies and powers at one instant.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EnergyTerms {
     /// Kinetic energy of the structure; of lumps with their added mass [J].
     pub kinetic: f64,
-    /// Elastic energy of the connectors [J].
+    /// Elastic energy of the lines [J].
     pub elastic: f64,
     /// Potential of gravity and of the seabed's springs [J].
     pub potential: f64,
@@ -34,6 +32,16 @@ pub struct EnergyTerms {
 }
 
 impl EnergyTerms {
+    /// Adds kinetic and potential energy of a frame or lump, and the powers of its loads.
+    pub(crate) fn add(&mut self, (kinetic, potential, powers): (f64, f64, LoadPowers)) {
+        self.kinetic += kinetic;
+        self.potential += potential;
+        self.drag += powers.drag;
+        self.added_mass += powers.added_mass;
+        self.buoyancy += powers.buoyancy;
+        self.seabed += powers.seabed_damping;
+    }
+
     /// Sum of the energies [J].
     pub fn stored(&self) -> f64 {
         self.kinetic + self.elastic + self.potential
@@ -56,47 +64,22 @@ impl EnergyTerms {
 impl SystemSolver<'_> {
     /// Energies and powers at `state`, which was the last one assembled.
     pub fn energy_terms(&self, time: f64, state: &MotionState) -> EnergyTerms {
-        let sea = self.sea(time);
+        let at = self.instant(time, state);
         let mut terms = EnergyTerms::default();
-        let mut add = |(kinetic, potential, powers): (f64, f64, LoadPowers)| {
-            terms.kinetic += kinetic;
-            terms.potential += potential;
-            terms.drag += powers.drag;
-            terms.added_mass += powers.added_mass;
-            terms.buoyancy += powers.buoyancy;
-            terms.seabed += powers.seabed_damping;
-        };
-        for (k, frame) in self.system.frames.iter().enumerate() {
-            add(frames::frame_energy(frame, &frame_motion(state, k), &sea));
-        }
-        for lump in &self.system.lumps {
-            add(frames::lump_energy(
-                lump,
-                &frame_motion(state, lump.frame),
-                &sea,
+        self.lines.add_energy(&at, &mut terms);
+        for k in self.system.body_frame(0)..self.system.frames.len() {
+            let motion = frame_motion(state, k);
+            terms.add(frames::frame_energy(
+                &self.system.frames[k],
+                &motion,
+                &at.sea,
             ));
         }
-        terms.loads = loads::power(self.system, &self.load_factors, state);
-        for (pair, connector) in self.pairs.iter().zip(&self.system.connectors) {
-            terms.elastic += pair.energy(&connector.law);
-            terms.structural_damping += pair.damping_power();
-            let forces = pair.forces();
-            for (mount, force) in [
-                (&connector.first, &forces.first),
-                (&connector.second, &forces.second),
-            ] {
-                let Mount {
-                    carrier: Carrier::Vessel(vessel),
-                    ..
-                } = mount
-                else {
-                    continue;
-                };
-                let motion = &self.vessels[*vessel];
-                terms.moved_ends += force.fixed_rows::<3>(0).dot(&motion.velocity)
-                    + force.fixed_rows::<3>(3).dot(&motion.spin);
-            }
+        for lump in &self.system.lumps {
+            let motion = frame_motion(state, lump.frame);
+            terms.add(frames::lump_energy(lump, &motion, &at.sea));
         }
+        terms.loads = loads::power(self.system, &self.load_factors, state);
         terms
     }
 }

@@ -2,7 +2,7 @@
 //! meet.
 
 use catenix_model::Seabed;
-use catenix_numerics::{Block6, Matrix3, Vector3, Vector6, so3::hat};
+use catenix_numerics::{Block6, Matrix3, MotionState, TangentWeights, Vector3, Vector6, so3::hat};
 
 use super::{Frame, FrameLump};
 use crate::body::inertia::{Tensors, inertia_force, inertia_tangent};
@@ -15,7 +15,7 @@ use crate::hydro::submergence::Submergence;
 
 /// The sea at one time.
 #[derive(Clone, Copy)]
-pub(super) struct Sea<'a> {
+pub(crate) struct Sea<'a> {
     pub current: &'a CurrentField,
     pub current_factor: f64,
     pub seabed: Option<&'a Seabed>,
@@ -24,7 +24,7 @@ pub(super) struct Sea<'a> {
 
 /// Motion of one frame, global.
 #[derive(Clone, Copy)]
-pub(super) struct FrameMotion {
+pub(crate) struct FrameMotion {
     pub position: Vector3,
     pub rotation: Matrix3,
     pub velocity: Vector3,
@@ -35,15 +35,39 @@ pub(super) struct FrameMotion {
 
 /// How velocity and acceleration follow an increment of this frame.
 #[derive(Clone, Copy)]
-pub(super) struct FrameWeights {
+pub(crate) struct FrameWeights {
     pub velocity: f64,
     pub acceleration: f64,
     pub rotation: Matrix3,
 }
 
+impl FrameWeights {
+    /// For frame `k`.
+    pub fn of(weights: &TangentWeights<'_>, k: usize) -> FrameWeights {
+        FrameWeights {
+            velocity: weights.velocity,
+            acceleration: weights.acceleration,
+            rotation: weights.turn(k),
+        }
+    }
+}
+
+/// Motion of frame `k` of a state.
+pub(crate) fn frame_motion(state: &MotionState, k: usize) -> FrameMotion {
+    let (velocity, acceleration) = (&state.velocity[k], &state.acceleration[k]);
+    FrameMotion {
+        position: state.configuration.position[k],
+        rotation: state.configuration.rotation[k],
+        velocity: velocity.fixed_rows::<3>(0).into_owned(),
+        spin: velocity.fixed_rows::<3>(3).into_owned(),
+        acceleration: acceleration.fixed_rows::<3>(0).into_owned(),
+        angular_acceleration: acceleration.fixed_rows::<3>(3).into_owned(),
+    }
+}
+
 /// Powers of the loads on a frame or lump [W].
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct LoadPowers {
+pub(crate) struct LoadPowers {
     pub drag: f64,
     pub added_mass: f64,
     pub buoyancy: f64,
@@ -132,7 +156,7 @@ impl Place {
 
 /// Adds inertia minus loads of a frame to its residual and, with `weights`, their derivatives to
 /// its diagonal block.
-pub(super) fn add_frame(
+pub(crate) fn add_frame(
     frame: &Frame,
     m: &FrameMotion,
     sea: &Sea<'_>,
@@ -250,7 +274,7 @@ fn lump_motion(lump: &FrameLump, m: &FrameMotion, sea: &Sea<'_>) -> (LumpMotion,
 }
 
 /// Adds inertia minus loads of a lump to its frame's residual and diagonal block.
-pub(super) fn add_lump(
+pub(crate) fn add_lump(
     lump: &FrameLump,
     m: &FrameMotion,
     sea: &Sea<'_>,
@@ -291,7 +315,7 @@ pub(super) fn add_lump(
 }
 
 /// Mass matrix of a frame at its place: the structure, and the added mass if `in_water`.
-pub(super) fn frame_mass(frame: &Frame, m: &FrameMotion, sea: &Sea<'_>, in_water: bool) -> Block6 {
+pub(crate) fn frame_mass(frame: &Frame, m: &FrameMotion, sea: &Sea<'_>, in_water: bool) -> Block6 {
     let mut place = Place::new(frame, m, sea);
     if !in_water {
         place.wet.share = 0.0;
@@ -304,7 +328,7 @@ pub(super) fn frame_mass(frame: &Frame, m: &FrameMotion, sea: &Sea<'_>, in_water
 }
 
 /// Mass matrix of a lump about its frame's origin.
-pub(super) fn lump_mass(
+pub(crate) fn lump_mass(
     lump: &FrameLump,
     m: &FrameMotion,
     sea: &Sea<'_>,
@@ -327,7 +351,7 @@ pub(super) fn lump_mass(
 }
 
 /// Kinetic, gravity and contact energy of a frame and the powers of its loads.
-pub(super) fn frame_energy(
+pub(crate) fn frame_energy(
     frame: &Frame,
     m: &FrameMotion,
     sea: &Sea<'_>,
@@ -368,7 +392,7 @@ pub(super) fn frame_energy(
 
 /// The same for a lump; its own mass is structure, its added mass is not told apart and counts as
 /// structure too.
-pub(super) fn lump_energy(
+pub(crate) fn lump_energy(
     lump: &FrameLump,
     m: &FrameMotion,
     sea: &Sea<'_>,

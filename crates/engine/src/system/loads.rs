@@ -3,9 +3,9 @@
 use catenix_model::{LoadPlace, PointLoad};
 use catenix_numerics::{BlockMatrix, Configuration, Matrix3, MotionState, Vector3, Vector6};
 
-use super::build::shares_at;
 use super::{LineLayout, System};
 use crate::element::dem::pair::six;
+use crate::formulation::Formulation;
 use crate::load::point::FramePoint;
 
 /// A load, or its share, on one frame.
@@ -21,6 +21,7 @@ pub(crate) struct FrameLoad {
 pub(super) fn place(
     loads: &[PointLoad],
     layouts: &[LineLayout],
+    formulation: &dyn Formulation,
     shape: &Configuration,
     first_body: usize,
 ) -> Vec<FrameLoad> {
@@ -47,11 +48,10 @@ pub(super) fn place(
         match load.place {
             LoadPlace::Line { line, arc_length } => {
                 let layout = &layouts[line];
-                for (element, offset, share) in shares_at(layout, arc_length) {
-                    let frame = layout.first_frame + element;
-                    let rotation = &shape.rotation[frame];
+                for spot in formulation.spots(layout, arc_length) {
+                    let rotation = &shape.rotation[spot.frame];
                     let to_frame = rotation.transpose() * local_axes(&rotation.column(0).into());
-                    add(frame, Vector3::x() * offset, to_frame, share);
+                    add(spot.frame, spot.arm, to_frame, spot.share);
                 }
             }
             LoadPlace::Body { body, point_local } => {

@@ -1,24 +1,24 @@
-//! The assembled system: flat arrays of frames and connectors, built once from a [`Model`] and
-//! never changed; everything that changes lives in the state and in a [`SystemSolver`].
+//! The assembled system: lines in their formulation, bodies, lumps and loads, built once from a
+//! [`Model`] and never changed; everything that changes lives in the state and in a [`SystemSolver`].
 //!
-//! Frames are numbered line by line, element by element from end A to end B, then the bodies.
+//! Frames are numbered line by line from end A to end B, then the bodies.
 
-mod assembly;
+pub(crate) mod assembly;
 mod balance;
 mod build;
-mod ends;
 mod energy;
-mod frames;
+pub(crate) mod frames;
 mod linearised;
 mod loads;
-mod natural;
-mod shape;
-mod slide;
+pub(crate) mod shape;
 mod solver;
 mod view;
 
 #[cfg(test)]
 mod tangent_test;
+
+use std::ops::Range;
+use std::sync::Arc;
 
 use catenix_model::{ChannelTarget, LineType, Model, NaturalShape};
 use catenix_numerics::{Configuration, Matrix3, Topology, Vector3};
@@ -26,8 +26,7 @@ use thiserror::Error;
 
 use crate::body::lump::Lump;
 use crate::body::motion::PrescribedMotion;
-use crate::element::dem::joint::JointStiffness;
-use crate::element::dem::stiffness::{ConnectorStiffness, HalfElement};
+use crate::formulation::Formulation;
 use crate::hydro::current::CurrentField;
 use crate::hydro::morison::DragCoefficients;
 use crate::load::variation;
@@ -65,8 +64,8 @@ pub struct System {
     pub(crate) frames: Vec<Frame>,
     pub(crate) lumps: Vec<FrameLump>,
     pub(crate) loads: Vec<loads::FrameLoad>,
-    pub(crate) connectors: Vec<Connector>,
     pub(crate) lines: Vec<LineLayout>,
+    pub(crate) formulation: Arc<dyn Formulation>,
     pub(crate) vessels: Vec<PrescribedMotion>,
     pub(crate) current: CurrentField,
     pub(crate) topology: Topology,
@@ -151,71 +150,13 @@ impl Mount {
     }
 }
 
-/// Where the blocks of a connector go in the matrix.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Place {
-    /// Between chain frames k and k + 1.
-    Link(usize),
-    /// Between a chain's first frame and its head junction.
-    Head(usize),
-    /// Between a chain's last frame and its tail junction.
-    Tail(usize),
-    /// One side is prescribed.
-    Grounded,
-}
-
-/// A connector of any kind.
-#[derive(Debug, Clone)]
-pub(crate) struct Connector {
-    pub law: ConnectorLaw,
-    pub first: Mount,
-    pub second: Mount,
-    pub place: Place,
-    /// Along which the support's side slides freely.
-    pub slide: Option<slide::Slide>,
-}
-
-#[derive(Debug, Clone)]
-pub(crate) enum ConnectorLaw {
-    /// Six components; first is towards end A.
-    Beam(ConnectorStiffness),
-    /// First is the support, second the element.
-    Joint(JointStiffness),
-}
-
-impl ConnectorLaw {
-    /// Stiffness of the connector, or of the half element behind a joint.
-    pub fn stiffness(&self) -> &ConnectorStiffness {
-        match self {
-            ConnectorLaw::Beam(stiffness) => stiffness,
-            ConnectorLaw::Joint(joint) => &joint.half,
-        }
-    }
-
-    /// 1 where a positive extension stretches the line, -1 where it compresses.
-    pub fn forward(&self) -> f64 {
-        match self {
-            ConnectorLaw::Beam(_) => 1.0,
-            ConnectorLaw::Joint(joint) => joint.forward,
-        }
-    }
-
-    /// How far beyond the elements' meeting point, towards end B, the connector acts [m].
-    pub fn shift(&self) -> f64 {
-        match self {
-            ConnectorLaw::Beam(stiffness) => stiffness.shift,
-            ConnectorLaw::Joint(_) => 0.0,
-        }
-    }
-}
-
 /// Where a line's parts are.
 #[derive(Debug, Clone)]
 pub(crate) struct LineLayout {
     pub first_frame: usize,
+    /// Frames that the formulation gives the line.
+    pub frame_count: usize,
     pub element_count: usize,
-    /// Connector at each node, end A to end B; `None` at a free end (n_elements + 1).
-    pub nodes: Vec<Option<usize>>,
     /// Unstretched distance of each node from end A (n_elements + 1) [m].
     pub arc_length: Vec<f64>,
     /// Line type of each element (n_elements).
@@ -225,29 +166,14 @@ pub(crate) struct LineLayout {
 }
 
 impl LineLayout {
+    /// The line's frames.
+    pub fn frames(&self) -> Range<usize> {
+        self.first_frame..self.first_frame + self.frame_count
+    }
+
     /// Unstretched length of an element [m].
     pub fn length(&self, element: usize) -> f64 {
         self.arc_length[element + 1] - self.arc_length[element]
-    }
-
-    /// Half of an element, for the connector on one of its sides.
-    pub fn half<'a>(&self, model: &'a Model, element: usize) -> HalfElement<'a> {
-        HalfElement {
-            line_type: &model.line_types[self.element_types[element]],
-            length: self.length(element),
-            natural: self.natural[element],
-        }
-    }
-
-    /// Stiffness of the connector at a node; at an end, of the half element and a clamp.
-    pub fn stiffness(&self, model: &Model, node: usize) -> ConnectorStiffness {
-        if node == 0 {
-            ConnectorStiffness::clamp(self.half(model, 0), true)
-        } else if node == self.element_count {
-            ConnectorStiffness::clamp(self.half(model, node - 1), false)
-        } else {
-            ConnectorStiffness::between(self.half(model, node - 1), self.half(model, node))
-        }
     }
 }
 
@@ -358,19 +284,15 @@ impl System {
     /// Which line or body a frame belongs to.
     pub fn owner(&self, frame: usize) -> FrameOwner {
         for (layout, line) in self.lines.iter().zip(&self.model.lines) {
-            if (layout.first_frame..layout.first_frame + layout.element_count).contains(&frame) {
-                let k = frame - layout.first_frame;
-                return FrameOwner::Element {
-                    line: line.name.clone(),
-                    number: k + 1,
-                    arc_length_m: 0.5 * (layout.arc_length[k] + layout.arc_length[k + 1]),
-                };
+            if layout.frames().contains(&frame) {
+                let index = frame - layout.first_frame;
+                return self.formulation.owner(line, layout, index);
             }
         }
         FrameOwner::Body(self.model.bodies[frame - self.body_frame(0)].name.clone())
     }
 
-    /// Squared frequency that round-off in the stiffest connector amounts to [rad2/s2].
+    /// Squared frequency that round-off in the stiffest spring amounts to [rad2/s2].
     pub(crate) fn frequency_round_off(&self) -> f64 {
         self.round_off(|frame| 1.0 / frame.mass)
     }
@@ -381,20 +303,9 @@ impl System {
         self.round_off(|frame| (0.5 * frame.length).powi(2) / frame.inertia.min())
     }
 
-    /// Rounding of the stiffest connector, over what its frames oppose to it.
+    /// Rounding of the stiffest spring, over what its frames oppose to it.
     fn round_off(&self, softness: impl Fn(&Frame) -> f64) -> f64 {
-        let stiffest = self.connectors.iter().map(|connector| {
-            let stiffness = connector.law.stiffness();
-            let softest = [connector.first.carrier, connector.second.carrier]
-                .into_iter()
-                .filter_map(|carrier| match carrier {
-                    Carrier::Free(k) => Some(softness(&self.frames[k])),
-                    Carrier::Vessel(_) => None,
-                })
-                .fold(0.0, f64::max);
-            stiffness.stiffest() * softest
-        });
-        4.0 * f64::EPSILON * stiffest.fold(0.0, f64::max)
+        4.0 * f64::EPSILON * self.formulation.stiffest_over(&self.frames, &softness)
     }
 
     /// Axis of a frame in its own axes: along the line, or a body's z.

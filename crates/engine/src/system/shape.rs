@@ -6,9 +6,9 @@
 //! Source: docs/theory/statics.md, eqs. (7) and (8).
 
 use catenix_model::{EndConnection, Joint, Line, LineEnd, Model, SupportRef};
-use catenix_numerics::{Configuration, Matrix3, Vector3, so3};
+use catenix_numerics::{Matrix3, Vector3, so3};
 
-use super::{Carrier, LineLayout, natural};
+use super::{Carrier, LineLayout};
 use crate::body::motion::PrescribedMotion;
 
 /// Rounds of sinking and pulling back within the lines' lengths.
@@ -16,7 +16,7 @@ const ROUNDS: usize = 400;
 
 /// Where a line can be connected, in the first shape.
 #[derive(Debug, Clone)]
-pub(super) struct Support {
+pub(crate) struct Support {
     pub carrier: Carrier,
     pub position: Vector3,
     pub rotation: Matrix3,
@@ -24,13 +24,13 @@ pub(super) struct Support {
 
 /// All supports: vessels, then bodies.
 #[derive(Debug, Clone)]
-pub(super) struct Supports {
+pub(crate) struct Supports {
     vessels: Vec<Support>,
     pub bodies: Vec<Support>,
 }
 
 impl Supports {
-    pub(super) fn get(&self, to: SupportRef) -> &Support {
+    pub(crate) fn get(&self, to: SupportRef) -> &Support {
         match to {
             SupportRef::Vessel(vessel) => &self.vessels[vessel],
             SupportRef::Body(body) => &self.bodies[body],
@@ -38,7 +38,7 @@ impl Supports {
     }
 
     /// Connection point of an end, if it is connected (3) [m].
-    fn point(&self, end: &LineEnd) -> Option<Vector3> {
+    pub(crate) fn point(&self, end: &LineEnd) -> Option<Vector3> {
         let LineEnd::Connected(EndConnection {
             to, point_local, ..
         }) = end
@@ -107,7 +107,7 @@ fn net_weight(model: &Model, line: &Line) -> f64 {
 }
 
 /// Height of the surface; without water there is none [m].
-fn surface(model: &Model) -> f64 {
+pub(crate) fn surface(model: &Model) -> f64 {
     match model.environment.water {
         Some(_) => 0.0,
         None => f64::INFINITY,
@@ -212,85 +212,8 @@ fn settle(model: &Model, supports: &mut Supports) {
     }
 }
 
-/// Positions and rotations of all frames: elements along arcs, bodies where they settled.
-pub(super) fn first_shape(
-    model: &Model,
-    layouts: &[LineLayout],
-    supports: &Supports,
-) -> Configuration {
-    let mut shape = Configuration::default();
-    for (line, layout) in model.lines.iter().zip(layouts) {
-        if natural::has_directions(model, line) {
-            for (position, rotation) in directed_line(model, line, layout, supports) {
-                shape.position.push(position);
-                shape.rotation.push(rotation);
-            }
-            continue;
-        }
-        let points = line_points(model, line, layout, supports);
-        let mut rotation = Matrix3::identity();
-        for k in 0..layout.element_count {
-            let chord = points[k + 1] - points[k];
-            let tangent = if chord.norm() > 0.0 {
-                chord.normalize()
-            } else {
-                -Vector3::z()
-            };
-            // Carried along without twist.
-            rotation = if k == 0 {
-                so3::frame_from_direction(&tangent, &so3::any_normal(&tangent))
-            } else {
-                let before: Vector3 = rotation.column(0).into();
-                so3::shortest_arc(&before, &tangent) * rotation
-            };
-            shape.position.push((points[k] + points[k + 1]) * 0.5);
-            shape.rotation.push(rotation);
-        }
-    }
-    for body in &supports.bodies {
-        shape.position.push(body.position);
-        shape.rotation.push(body.rotation);
-    }
-    shape
-}
-
-/// Elements of a line whose sections have directions: along the same shapes as other lines, but
-/// a curved line that is not held at both ends starts in its stress-free shape.
-fn directed_line(
-    model: &Model,
-    line: &Line,
-    layout: &LineLayout,
-    supports: &Supports,
-) -> Vec<(Vector3, Matrix3)> {
-    let ends = [supports.point(&line.ends[0]), supports.point(&line.ends[1])];
-    let loose = ends.iter().any(Option::is_none);
-    if natural::is_curved(line) && loose && line.start_shape.is_empty() {
-        let held = usize::from(ends[0].is_none() && ends[1].is_some());
-        let point = ends[held].unwrap_or_else(Vector3::zeros);
-        let sign = if held == 0 { 1.0 } else { -1.0 };
-        let length = line.length();
-        let down = net_direction(model, line);
-        let surface = surface(model);
-        let end = &line.ends[held];
-        let away = loose_direction(end, held, &point, length, &down, surface, supports);
-        let direction = away * sign;
-        return natural::stress_free(model, line, layout, held, &point, &direction, supports);
-    }
-    let points = line_points(model, line, layout, supports);
-    let tangents: Vec<Vector3> = points
-        .windows(2)
-        .map(|pair| {
-            let tangent = (pair[1] - pair[0]).try_normalize(0.0);
-            tangent.unwrap_or_else(|| -Vector3::z())
-        })
-        .collect();
-    let rotations = natural::rotations_along(model, line, layout, &tangents, supports);
-    let middle = points.windows(2).map(|pair| (pair[0] + pair[1]) * 0.5);
-    middle.zip(rotations).collect()
-}
-
 /// Where a line tends to: down, or up if it is lighter than water.
-fn net_direction(model: &Model, line: &Line) -> Vector3 {
+pub(crate) fn net_direction(model: &Model, line: &Line) -> Vector3 {
     if net_weight(model, line) >= 0.0 {
         -Vector3::z()
     } else {
@@ -299,7 +222,7 @@ fn net_direction(model: &Model, line: &Line) -> Vector3 {
 }
 
 /// Node positions of a line, end A to end B.
-fn line_points(
+pub(crate) fn line_points(
     model: &Model,
     line: &Line,
     layout: &LineLayout,
@@ -368,7 +291,7 @@ fn along_polyline(line: &Line, layout: &LineLayout) -> Vec<Vector3> {
 /// Where a line with one loose end leads from the end that is held: in the direction in which a
 /// fixed joint or a hinge holds it, or down (a heavy line), up (a light one under deep enough
 /// water), or along the surface.
-fn loose_direction(
+pub(crate) fn loose_direction(
     held: &LineEnd,
     end: usize,
     start: &Vector3,
@@ -442,7 +365,7 @@ mod tests {
         let layout = LineLayout {
             first_frame: 0,
             element_count: 0,
-            nodes: Vec::new(),
+            frame_count: 0,
             arc_length: vec![0.0, 2.0, 6.0, 7.0, 8.0],
             element_types: Vec::new(),
             natural: Vec::new(),

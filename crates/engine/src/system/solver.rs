@@ -6,11 +6,10 @@ use catenix_numerics::{
 };
 
 use super::System;
-use super::assembly::{self, EvaluatedPair};
 use super::frames::Sea;
-use super::loads;
+use super::{assembly, loads};
 use crate::body::motion::RigidMotion;
-use crate::element::dem::connector::Prediction;
+use crate::formulation::{Evaluation, Instant};
 use crate::load::variation;
 
 /// Loads that one factor scales, whatever their variation over time.
@@ -23,7 +22,7 @@ pub(crate) struct LoadControl {
 }
 
 /// A system with the room that solving needs.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct SystemSolver<'a> {
     pub(super) system: &'a System,
     /// Whether the current acts.
@@ -35,9 +34,7 @@ pub struct SystemSolver<'a> {
     load_control: Option<LoadControl>,
     /// Factor on each load, as last evaluated.
     pub(super) load_factors: Vec<f64>,
-    pub(super) pairs: Vec<EvaluatedPair>,
-    predicted: Vec<Prediction>,
-    has_prediction: bool,
+    pub(super) lines: Box<dyn Evaluation>,
     pub(super) matrix: BlockMatrix,
     factors: Factorisation,
     factorisations: usize,
@@ -61,21 +58,22 @@ impl<'a> SystemSolver<'a> {
             .iter()
             .map(|vessel| vessel.at(0.0).stopped())
             .collect();
-        let pairs = system
-            .connectors
-            .iter()
-            .map(|connector| EvaluatedPair::new(connector, &state, &vessels))
-            .collect();
         SystemSolver {
             system,
             current_acts,
             vessels_move,
-            vessels,
             load_control: None,
             load_factors: vec![0.0; system.model.loads.len()],
-            pairs,
-            predicted: vec![Prediction::default(); system.connectors.len()],
-            has_prediction: false,
+            lines: {
+                let at = Instant {
+                    system,
+                    sea: sea(system, 0.0, current_acts),
+                    vessels: &vessels,
+                    state: &state,
+                };
+                system.formulation.clone().evaluation(&at)
+            },
+            vessels,
             matrix: BlockMatrix::zeros(&system.topology),
             factors: Factorisation::new(&system.topology),
             factorisations: 0,
@@ -140,18 +138,45 @@ impl<'a> SystemSolver<'a> {
         }
     }
 
-    pub(super) fn sea(&self, time: f64) -> Sea<'a> {
-        let environment = &self.system.model.environment;
-        Sea {
-            current: &self.system.current,
-            current_factor: if self.current_acts {
-                self.system.current.factor(time)
-            } else {
-                0.0
-            },
-            seabed: environment.seabed.as_ref(),
-            depth: environment.water.map_or(0.0, |water| water.depth),
+    /// `state` with its surroundings; the vessels are where the last assembly put them.
+    pub(super) fn instant<'s>(&'s self, time: f64, state: &'s MotionState) -> Instant<'s> {
+        Instant {
+            system: self.system,
+            sea: sea(self.system, time, self.current_acts),
+            vessels: &self.vessels,
+            state,
         }
+    }
+}
+
+impl Clone for SystemSolver<'_> {
+    fn clone(&self) -> Self {
+        SystemSolver {
+            system: self.system,
+            current_acts: self.current_acts,
+            vessels_move: self.vessels_move,
+            vessels: self.vessels.clone(),
+            load_control: self.load_control.clone(),
+            load_factors: self.load_factors.clone(),
+            lines: self.lines.duplicate(),
+            matrix: self.matrix.clone(),
+            factors: self.factors.clone(),
+            factorisations: self.factorisations,
+        }
+    }
+}
+
+fn sea(system: &System, time: f64, current_acts: bool) -> Sea<'_> {
+    let environment = &system.model.environment;
+    Sea {
+        current: &system.current,
+        current_factor: if current_acts {
+            system.current.factor(time)
+        } else {
+            0.0
+        },
+        seabed: environment.seabed.as_ref(),
+        depth: environment.water.map_or(0.0, |water| water.depth),
     }
 }
 
@@ -161,7 +186,7 @@ impl ImplicitSystem for SystemSolver<'_> {
     }
 
     fn begin(&mut self) {
-        self.has_prediction = false;
+        self.lines.begin();
     }
 
     fn assemble(
@@ -185,16 +210,17 @@ impl ImplicitSystem for SystemSolver<'_> {
                 self.load_factors[load] = control.factor;
             }
         }
-        let predictions = self.has_prediction.then_some(self.predicted.as_slice());
-        assembly::assemble(
-            self.system,
-            &self.sea(time),
-            &self.vessels,
-            &self.load_factors,
+        let at = Instant {
+            system: self.system,
+            sea: sea(self.system, time, self.current_acts),
+            vessels: &self.vessels,
             state,
+        };
+        assembly::assemble(
+            &at,
+            &self.load_factors,
             weights,
-            predictions,
-            &mut self.pairs,
+            &mut *self.lines,
             residual,
             &mut self.matrix,
         );
@@ -214,15 +240,7 @@ impl ImplicitSystem for SystemSolver<'_> {
     }
 
     fn moving(&mut self, increment: &[Vector6]) {
-        for ((prediction, pair), connector) in self
-            .predicted
-            .iter_mut()
-            .zip(&self.pairs)
-            .zip(&self.system.connectors)
-        {
-            *prediction = pair.predicted(connector, increment);
-        }
-        self.has_prediction = true;
+        self.lines.moving(self.system, increment);
     }
 
     fn residual_size(&self, residual: &[Vector6]) -> ResidualSize {

@@ -3,9 +3,8 @@
 use catenix_model::{Axis, ChannelTarget, LineQuantity};
 use catenix_numerics::{MotionState, Vector3, Vector6, so3};
 
-use super::ConnectorLaw;
-use super::assembly::{EvaluatedPair, PairState};
 use super::solver::SystemSolver;
+use crate::formulation::{Instant, NodeResult};
 
 /// A state as results see it. Valid for the state that was assembled last.
 pub struct StepView<'a> {
@@ -15,20 +14,6 @@ pub struct StepView<'a> {
     pub(crate) step: f64,
     pub(crate) at_output_time: bool,
     pub(crate) at_field_time: bool,
-}
-
-/// Local result at a node of a line.
-#[derive(Debug, Clone, Copy, Default)]
-struct NodeResult {
-    position: Vector3,
-    axis: Vector3,
-    tension: f64,
-    shear: f64,
-    bend_moment: f64,
-    torque: f64,
-    curvature: f64,
-    /// Elastic moment, signed as bend towards end B (3) [N m].
-    elastic_moment: Vector3,
 }
 
 impl StepView<'_> {
@@ -161,158 +146,15 @@ impl StepView<'_> {
 
     /// Force and moment (about the connection point) of a line on what its end is connected to.
     fn end_load(&self, line: usize, end: usize) -> Vector6 {
-        let system = self.solver.system;
-        let Some(index) = system.lines[line].nodes[self.end_node(line, end)] else {
-            return Vector6::zeros();
-        };
-        let (connector, pair) = (&system.connectors[index], &self.solver.pairs[index]);
-        let forces = pair.forces();
-        let support_first = matches!(connector.law, ConnectorLaw::Joint(_)) || end == 0;
-        let (load, side) = if support_first {
-            (-forces.first, &pair.first)
-        } else {
-            (-forces.second, &pair.second)
-        };
-        let shift = side.rotation.column(0) * connector.law.shift();
-        let arm = side.lever - shift;
-        let force: Vector3 = load.fixed_rows::<3>(0).into();
-        let moment: Vector3 = load.fixed_rows::<3>(3).into();
-        crate::element::dem::pair::six(&force, &(moment - arm.cross(&force)))
+        self.solver.lines.end_load(&self.instant(), line, end)
     }
 
     fn node(&self, line: usize, node: usize) -> NodeResult {
-        let system = self.solver.system;
-        let layout = &system.lines[line];
-        let element = layout.first_frame + node.min(layout.element_count - 1);
-        let Some(index) = layout.nodes[node] else {
-            return self.free_end(line, node);
-        };
-        let pair = &self.solver.pairs[index];
-        let shift = system.connectors[index].law.shift();
-        let mut result = match &pair.state {
-            PairState::Beam(state) => {
-                let axis = match node {
-                    // A clamp holds the direction of the line.
-                    0 => pair.first.rotation.column(0).into(),
-                    _ if node == layout.element_count => pair.second.rotation.column(0).into(),
-                    _ => state.axis,
-                };
-                beam_node(pair, shift, &axis)
-            }
-            PairState::Joint(_) => joint_node(pair, node == 0, &self.end_axis(line, node)),
-        };
-        let last = layout.element_count - 1;
-        let sides = [node.saturating_sub(1), node.min(last)];
-        if system.connectors[index].law.stiffness().general.is_some() {
-            let of_side = |&k: &usize| self.section_curvature(line, k, pair, &result);
-            result.curvature = sides.iter().map(of_side).fold(0.0, f64::max);
-            return result;
-        }
-        let stiffness = |k: usize| system.element_type(line, k).bending_stiffness[0];
-        // Where the stiffness jumps, the more flexible side has the larger curvature.
-        let bending = stiffness(sides[0]).min(stiffness(sides[1]));
-        if bending > 0.0 {
-            result.curvature = result.bend_moment / bending;
-        } else {
-            let first: Vector3 = pair.first.rotation.column(0).into();
-            let second: Vector3 = pair.second.rotation.column(0).into();
-            let length = system.frames[element].length;
-            result.curvature = angle_between(&first, &second).to_radians() / length;
-        }
-        result
+        self.solver.lines.node(&self.instant(), line, node)
     }
 
-    /// Curvature of the section of an element beside a connector: the natural one, and what the
-    /// moment adds by the section's law.
-    ///
-    /// Source: docs/theory/sections.md, eq. (17).
-    fn section_curvature(
-        &self,
-        line: usize,
-        element: usize,
-        pair: &EvaluatedPair,
-        node: &NodeResult,
-    ) -> f64 {
-        let system = self.solver.system;
-        let line_type = system.element_type(line, element);
-        let elastic = &node.elastic_moment;
-        let across = elastic - node.axis * node.axis.dot(elastic);
-        // Directors half way between the two sections of a beam; those of the element at a joint.
-        let director = |column: usize| -> Vector3 {
-            let own: Vector3 = pair.second.rotation.column(column).into();
-            match &pair.state {
-                PairState::Beam(_) => (own + pair.first.rotation.column(column)).normalize(),
-                PairState::Joint(_) => own,
-            }
-        };
-        let moment = [director(1).dot(&across), director(2).dot(&across)];
-        let by_moment = match &line_type.bending_law {
-            Some(points) => {
-                let size = moment[0].hypot(moment[1]);
-                let share = if size > 0.0 {
-                    law_curvature(points, size) / size
-                } else {
-                    0.0
-                };
-                moment.map(|m| m * share)
-            }
-            None => {
-                let stiffness = line_type.bending_stiffness;
-                [0, 1].map(|k| {
-                    if stiffness[k] > 0.0 {
-                        moment[k] / stiffness[k]
-                    } else {
-                        0.0
-                    }
-                })
-            }
-        };
-        let natural = system.lines[line].natural[element].curvature;
-        (natural[0] + by_moment[0]).hypot(natural[1] + by_moment[1])
-    }
-
-    /// A free end carries nothing.
-    fn free_end(&self, line: usize, node: usize) -> NodeResult {
-        let layout = &self.solver.system.lines[line];
-        let at_b = node > 0;
-        let frame = layout.first_frame + if at_b { node - 1 } else { 0 };
-        let element_axis: Vector3 = self.state.configuration.rotation[frame].column(0).into();
-        let half = self.solver.system.frames[frame].length * if at_b { 0.5 } else { -0.5 };
-        NodeResult {
-            position: self.state.configuration.position[frame] + element_axis * half,
-            axis: self.end_axis(line, node),
-            curvature: {
-                let [y, z] = layout.natural[frame - layout.first_frame].curvature;
-                y.hypot(z)
-            },
-            ..NodeResult::default()
-        }
-    }
-
-    /// Axis of a line at its very end, extrapolated from the two elements there.
-    ///
-    /// Source: docs/theory/results.md, eq. (10).
-    fn end_axis(&self, line: usize, node: usize) -> Vector3 {
-        let system = self.solver.system;
-        let layout = &system.lines[line];
-        let (end, next) = if node == 0 {
-            (0, 1)
-        } else {
-            (
-                layout.element_count - 1,
-                layout.element_count.saturating_sub(2),
-            )
-        };
-        let axis = |element: usize| -> Vector3 {
-            let frame = layout.first_frame + element;
-            self.state.configuration.rotation[frame].column(0).into()
-        };
-        if layout.element_count < 2 {
-            return axis(end);
-        }
-        let length = |element: usize| system.frames[layout.first_frame + element].length;
-        let ahead = length(end) / (length(end) + length(next));
-        (axis(end) + (axis(end) - axis(next)) * ahead).normalize()
+    fn instant(&self) -> Instant<'_> {
+        self.solver.instant(self.time, self.state)
     }
 
     fn quantities(&self, line: usize, node: usize) -> [f64; 11] {
@@ -357,16 +199,6 @@ impl StepView<'_> {
     }
 }
 
-/// Curvature [1/m] at a moment [N m] by the points of a bending law (curvature, moment).
-fn law_curvature(points: &[[f64; 2]], moment: f64) -> f64 {
-    let above = points.partition_point(|point| point[1] < moment);
-    let [a, b] = {
-        let upper = above.clamp(1, points.len() - 1);
-        [points[upper - 1], points[upper]]
-    };
-    a[0] + (moment - a[1]) * (b[0] - a[0]) / (b[1] - a[1])
-}
-
 fn pick(v: &Vector3, axis: Axis) -> f64 {
     v[axis as usize]
 }
@@ -374,52 +206,6 @@ fn pick(v: &Vector3, axis: Axis) -> f64 {
 /// Angle between two vectors [deg].
 fn angle_between(a: &Vector3, b: &Vector3) -> f64 {
     a.cross(b).norm().atan2(a.dot(b)).to_degrees()
-}
-
-fn split(v: &Vector3, axis: &Vector3) -> (f64, f64) {
-    let along = axis.dot(v);
-    (along, (v - axis * along).norm())
-}
-
-/// Results at the elements' meeting point, `shift` before the point where the connector acts.
-fn beam_node(pair: &EvaluatedPair, shift: f64, axis: &Vector3) -> NodeResult {
-    let PairState::Beam(state) = &pair.state else {
-        return NodeResult::default();
-    };
-    let force = state.elastic.force + state.damping.force;
-    let arm = state.axis * shift;
-    let moment = state.elastic.moment + state.damping.moment + arm.cross(&force);
-    let (tension, shear) = split(&force, axis);
-    let (torque, bend_moment) = split(&moment, axis);
-    NodeResult {
-        position: (pair.first.point + pair.second.point) * 0.5 - arm,
-        axis: *axis,
-        tension,
-        shear,
-        bend_moment,
-        torque,
-        curvature: 0.0,
-        elastic_moment: state.elastic.moment + arm.cross(&state.elastic.force),
-    }
-}
-
-fn joint_node(pair: &EvaluatedPair, at_a: bool, axis: &Vector3) -> NodeResult {
-    let PairState::Joint(state) = &pair.state else {
-        return NodeResult::default();
-    };
-    // The gap points from the element's end to the support: forward at end B, backward at end A.
-    let (along, shear) = split(&(state.elastic + state.damping), axis);
-    let (torque, bend_moment) = split(&state.moment, axis);
-    NodeResult {
-        position: pair.first.point,
-        axis: *axis,
-        tension: if at_a { -along } else { along },
-        shear,
-        bend_moment,
-        torque: if at_a { torque } else { -torque },
-        curvature: 0.0,
-        elastic_moment: if at_a { state.moment } else { -state.moment },
-    }
 }
 
 /// Largest von Mises stress over the inner and outer fibres of a thick-walled tube.

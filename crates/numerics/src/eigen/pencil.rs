@@ -1,7 +1,7 @@
-//! Two symmetric matrices, K on a topology and M block diagonal, and the factors of K - sigma M.
+//! Two symmetric matrices on a topology, K and M, and the factors of K - sigma M.
 
 use super::{add_scaled, dot};
-use crate::{Block6, BlockMatrix, Factorisation, Topology, Vector6};
+use crate::{BlockMatrix, Factorisation, Topology, Vector6};
 
 /// Relative move of a shift that hit an eigenvalue, and how often it is tried.
 const NUDGE: f64 = 1e-7;
@@ -12,16 +12,15 @@ const NUDGES: usize = 8;
 pub struct Pencil<'a> {
     topology: &'a Topology,
     stiffness: BlockMatrix,
-    mass: Vec<Block6>,
+    mass: BlockMatrix,
     shifted: BlockMatrix,
     factors: Factorisation,
     shift: f64,
 }
 
 impl<'a> Pencil<'a> {
-    /// The pencil of the symmetric part of `stiffness` and the symmetric `mass`, one block per
-    /// frame (frame_count).
-    pub fn new(topology: &'a Topology, stiffness: &BlockMatrix, mass: Vec<Block6>) -> Pencil<'a> {
+    /// The pencil of the symmetric part of `stiffness` and the symmetric `mass`.
+    pub fn new(topology: &'a Topology, stiffness: &BlockMatrix, mass: BlockMatrix) -> Pencil<'a> {
         let stiffness = stiffness.symmetric_part();
         Pencil {
             topology,
@@ -51,9 +50,7 @@ impl<'a> Pencil<'a> {
     pub fn factorise(&mut self, sigma: f64) -> Option<usize> {
         for nudge in 0..NUDGES {
             let sigma = sigma + NUDGE * nudge as f64 * sigma.abs().max(f64::MIN_POSITIVE);
-            for (k, block) in self.shifted.diagonal.iter_mut().enumerate() {
-                *block = self.stiffness.diagonal[k].plus(-sigma, &self.mass[k]);
-            }
+            self.shifted.set_sum(&self.stiffness, -sigma, &self.mass);
             if self.factors.factorise(self.topology, &self.shifted).is_ok() {
                 self.shift = sigma;
                 return Some(self.factors.negative_eigenvalues());
@@ -69,10 +66,7 @@ impl<'a> Pencil<'a> {
 
     /// y <- M x
     pub fn mass_times(&self, x: &[Vector6], y: &mut [Vector6]) {
-        for ((block, x), y) in self.mass.iter().zip(x).zip(y) {
-            *y = Vector6::zeros();
-            block.add_times(x, y);
-        }
+        self.mass.times(self.topology, x, y);
     }
 
     /// K x - lambda M x (frame_count).

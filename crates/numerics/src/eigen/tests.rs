@@ -56,15 +56,16 @@ fn random_pencil(topology: &Topology, seed: u64) -> Pencil<'_> {
     matrix.lower.iter_mut().for_each(&mut fill);
     matrix.head.iter_mut().flatten().for_each(&mut fill);
     matrix.tail.iter_mut().flatten().for_each(&mut fill);
-    let mass = (0..topology.frame_count())
-        .map(|k| {
-            let mut block = Block6::ZERO;
-            fill(&mut block);
-            let mut symmetric = block.plus(1.0, &block.transposed());
-            (0..6).for_each(|d| symmetric.add_diagonal(d, 6.0 + k as f64));
-            symmetric
-        })
-        .collect();
+    // Coupled like the stiffness, and kept positive by its diagonal.
+    let mut mass = BlockMatrix::zeros(topology);
+    mass.diagonal.iter_mut().for_each(&mut fill);
+    mass.upper.iter_mut().for_each(&mut fill);
+    mass.head.iter_mut().flatten().for_each(&mut fill);
+    mass.tail.iter_mut().flatten().for_each(&mut fill);
+    let mut mass = mass.symmetric_part();
+    for (k, block) in mass.diagonal.iter_mut().enumerate() {
+        (0..6).for_each(|d| block.add_diagonal(d, 12.0 + k as f64));
+    }
     Pencil::new(topology, &matrix, mass)
 }
 
@@ -148,7 +149,9 @@ fn equal_eigenvalues_are_found_whole() {
         matrix.upper[k] = Block6::ZERO.plus(-1.0, &identity);
         matrix.lower[k] = matrix.upper[k];
     }
-    let mut pencil = Pencil::new(&topology, &matrix, vec![identity; n]);
+    let mut mass = BlockMatrix::zeros(&topology);
+    mass.diagonal.fill(identity);
+    let mut pencil = Pencil::new(&topology, &matrix, mass);
     let mut progress = go_on;
     let mut spectrum = Spectrum::new(&mut pencil, &mut progress);
     let low = spectrum.count(0.0).unwrap();

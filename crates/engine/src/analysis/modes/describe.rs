@@ -3,7 +3,7 @@
 //! Source: docs/theory/modes.md, eqs. (14) to (17).
 
 use catenix_numerics::eigen::{Eigenpair, Pencil, dot};
-use catenix_numerics::{Block6, MotionState, Vector3, Vector6};
+use catenix_numerics::{MotionState, Vector3, Vector6};
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::{Mode, ModeKind};
@@ -48,42 +48,42 @@ const DIRECTIONS: [f64; 3] = [1.0, 0.5, 0.25];
 /// in one direction and in few lines, if such there are.
 ///
 /// Source: docs/theory/modes.md, eq. (14).
-pub(super) fn align_equal(system: &System, mass: &[Block6], pairs: &mut [Eigenpair], equal: f64) {
+pub(super) fn align_equal(
+    system: &System,
+    pencil: &Pencil<'_>,
+    pairs: &mut [Eigenpair],
+    equal: f64,
+) {
     let mut start = 0;
     while start < pairs.len() {
         let first = pairs[start].value;
         let same = |pair: &Eigenpair| (pair.value - first).abs() <= equal * first.abs();
         let len = pairs[start..].iter().take_while(|pair| same(pair)).count();
         if len > 1 {
-            align(system, mass, &mut pairs[start..start + len]);
+            align(system, pencil, &mut pairs[start..start + len]);
         }
         start += len.max(1);
     }
 }
 
-fn align(system: &System, mass: &[Block6], group: &mut [Eigenpair]) {
+fn align(system: &System, pencil: &Pencil<'_>, group: &mut [Eigenpair]) {
     let line_weight = line_weights(system);
     let weighted = |vector: &[Vector6]| -> Vec<Vector6> {
-        (0..mass.len())
-            .map(|k| {
-                let u = &vector[k];
-                let weight = |axis: usize| DIRECTIONS[axis] * line_weight[k];
-                let moved = Vector6::new(
-                    weight(0) * u[0],
-                    weight(1) * u[1],
-                    weight(2) * u[2],
-                    line_weight[k] * u[3],
-                    line_weight[k] * u[4],
-                    line_weight[k] * u[5],
-                );
-                let mut force = Vector6::zeros();
-                mass[k].add_times(&moved, &mut force);
-                force
+        let moved: Vec<Vector6> = vector
+            .iter()
+            .zip(&line_weight)
+            .map(|(u, weight)| {
+                let own = |axis: usize| DIRECTIONS.get(axis).unwrap_or(&1.0) * weight;
+                Vector6::from_fn(|axis, _| own(axis) * u[axis])
             })
-            .collect()
+            .collect();
+        let mut forces = vec![Vector6::zeros(); moved.len()];
+        pencil.mass_times(&moved, &mut forces);
+        forces
     };
     let forces: Vec<Vec<Vector6>> = group.iter().map(|pair| weighted(&pair.vector)).collect();
     let n = group.len();
+    let pair_len = group[0].vector.len();
     let matrix = DMatrix::from_fn(n, n, |row, column| {
         0.5 * (dot(&group[row].vector, &forces[column]) + dot(&group[column].vector, &forces[row]))
     });
@@ -93,7 +93,7 @@ fn align(system: &System, mass: &[Block6], group: &mut [Eigenpair]) {
     let turned: Vec<Vec<Vector6>> = order
         .iter()
         .map(|&column| {
-            let mut vector = vec![Vector6::zeros(); mass.len()];
+            let mut vector = vec![Vector6::zeros(); pair_len];
             for (row, pair) in group.iter().enumerate() {
                 let share = eigen.eigenvectors[(row, column)];
                 catenix_numerics::eigen::add_scaled(&mut vector, share, &pair.vector);
@@ -110,8 +110,7 @@ fn align(system: &System, mass: &[Block6], group: &mut [Eigenpair]) {
 fn line_weights(system: &System) -> Vec<f64> {
     let mut weights = vec![1.0; system.frame_count()];
     for (index, layout) in system.lines.iter().enumerate() {
-        let frames = layout.first_frame..layout.first_frame + layout.element_count;
-        weights[frames].fill(1.0 + 0.01 * (system.lines.len() - index) as f64);
+        weights[layout.frames()].fill(1.0 + 0.01 * (system.lines.len() - index) as f64);
     }
     weights
 }
@@ -121,30 +120,24 @@ pub(super) struct Describer<'s, 'p> {
     system: &'s System,
     state: MotionState,
     pencil: &'s Pencil<'p>,
-    mass: &'s [Block6],
     /// M r for r one along x, y and z.
     inertia_along: [Vec<Vector6>; 3],
 }
 
 impl<'s, 'p> Describer<'s, 'p> {
-    pub(super) fn new(
-        system: &'s System,
-        state: &MotionState,
-        pencil: &'s Pencil<'p>,
-        mass: &'s [Block6],
-    ) -> Self {
+    pub(super) fn new(system: &'s System, state: &MotionState, pencil: &'s Pencil<'p>) -> Self {
         let inertia_along = [0, 1, 2].map(|axis| {
             let mut along = Vector6::zeros();
             along[axis] = 1.0;
-            let mut inertia = vec![Vector6::zeros(); mass.len()];
-            pencil.mass_times(&vec![along; mass.len()], &mut inertia);
+            let n = system.frame_count();
+            let mut inertia = vec![Vector6::zeros(); n];
+            pencil.mass_times(&vec![along; n], &mut inertia);
             inertia
         });
         Describer {
             system,
             state: state.clone(),
             pencil,
-            mass,
             inertia_along,
         }
     }
@@ -200,9 +193,9 @@ impl<'s, 'p> Describer<'s, 'p> {
     fn motions(&self, x: &[Vector6]) -> Vec<(Motion, f64)> {
         let mut energy = [0.0; 6];
         let first_body = self.system.body_frame(0);
-        for (k, d) in x.iter().enumerate() {
-            let mut force = Vector6::zeros();
-            self.mass[k].add_times(d, &mut force);
+        let mut forces = vec![Vector6::zeros(); x.len()];
+        self.pencil.mass_times(x, &mut forces);
+        for (k, (d, force)) in x.iter().zip(&forces).enumerate() {
             let (u, turn) = (d.fixed_rows::<3>(0), d.fixed_rows::<3>(3));
             let (f, moment) = (force.fixed_rows::<3>(0), force.fixed_rows::<3>(3));
             let mut translate = |u: &Vector3, f: &Vector3| {

@@ -216,7 +216,7 @@ pub fn find_modes<'a>(
     let mut state = equilibrium.state.clone();
     let stiffness = solver.stiffness(&state).clone();
     let mass = solver.mass(&state, settings.added_mass);
-    let mut pencil = Pencil::new(&system.topology, &stiffness, mass.clone());
+    let mut pencil = Pencil::new(&system.topology, &stiffness, mass);
     let mut tell = |found: usize| progress(&ModesProgress { found });
     let mut spectrum = Spectrum::new(&mut pencil, &mut tell);
     let slow = [FREE, system.frequency_round_off(), system.spin_round_off()];
@@ -226,9 +226,9 @@ pub fn find_modes<'a>(
     let factorisations = spectrum.factorisations;
 
     let mut pairs = search.pairs;
-    align_equal(system, &mass, &mut pairs, EQUAL);
+    align_equal(system, &pencil, &mut pairs, EQUAL);
     let unsymmetric = unsymmetric_coupling(system, &stiffness, &pencil, &pairs, slow);
-    let describer = Describer::new(system, &state, &pencil, &mass);
+    let describer = Describer::new(system, &state, &pencil);
     let total_mass_kg = describer.total_mass();
     let mut modes = Vec::new();
     let free = FREE.max(system.frequency_round_off());

@@ -97,6 +97,8 @@ fn dense_eigenvalues(statics: &StaticSolution<'_>, added_mass: bool) -> Vec<f64>
         unit[column / 6][column % 6] = 1.0;
         let mut force = vec![Vector6::zeros(); n];
         stiffness.subtract_times(topology, &unit, &mut force);
+        let mut inertia_of_unit = vec![Vector6::zeros(); n];
+        mass.times(topology, &unit, &mut inertia_of_unit);
         state.acceleration.copy_from_slice(&unit);
         let mut moved = vec![Vector6::zeros(); n];
         solver.assemble(0.0, &state, None, &mut moved);
@@ -104,11 +106,7 @@ fn dense_eigenvalues(statics: &StaticSolution<'_>, added_mass: bool) -> Vec<f64>
         for row in 0..6 * n {
             k[(row, column)] = -force[row / 6][row % 6];
             let inertia = moved[row / 6][row % 6] - still[row / 6][row % 6];
-            let own = if row / 6 == column / 6 {
-                mass[row / 6].at(row % 6, column % 6)
-            } else {
-                0.0
-            };
+            let own = inertia_of_unit[row / 6][row % 6];
             if added_mass {
                 // Residuals are known to some 1e-9 N.
                 assert!(

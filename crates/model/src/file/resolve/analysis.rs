@@ -5,10 +5,12 @@ use crate::file::dimension::Dimensionless;
 use crate::file::log::Log;
 use crate::file::node::Span;
 use crate::file::quantity::Quantity;
-use crate::file::tables::{DynamicsTable, IntegratorChoice, ModesTable, StaticsTable};
+use crate::file::tables::{
+    DynamicsTable, FormulationChoice, IntegratorChoice, ModesTable, StaticsTable,
+};
 use crate::{
-    DynamicsSettings, IntegratorSettings, ModeRange, ModeSettings, Motion, StaticsSettings,
-    StepControl, Vessel,
+    DynamicsSettings, FormulationKind, IntegratorSettings, ModeRange, ModeSettings, Motion,
+    StaticsSettings, StepControl, Vessel,
 };
 
 use super::Slot;
@@ -24,6 +26,16 @@ const DEFAULT_MAX_STEP: f64 = 0.5;
 const DEFAULT_SPECTRAL_RADIUS: f64 = 0.8;
 /// Highest order of BDF where the file does not say; named in the key's description.
 const DEFAULT_MAX_ORDER: usize = 2;
+
+/// Resolves the formulation of lines.
+pub(super) fn formulation(choice: FormulationChoice) -> FormulationKind {
+    match choice {
+        FormulationChoice::Dem => FormulationKind::Dem,
+        FormulationChoice::Fem => FormulationKind::Fem,
+        FormulationChoice::FemExact => FormulationKind::FemExact,
+        FormulationChoice::Lumped => FormulationKind::Lumped,
+    }
+}
 
 /// Resolves the settings of statics.
 pub(super) fn statics(table: &StaticsTable, log: &mut Log) -> StaticsSettings {

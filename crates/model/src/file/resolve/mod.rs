@@ -157,6 +157,7 @@ pub(super) fn resolve_case(
     };
     let model = Model {
         title: title.to_owned(),
+        formulation: analysis::formulation(table.formulation),
         environment: assembly.environment,
         line_types: filled(assembly.line_types)?
             .into_iter()

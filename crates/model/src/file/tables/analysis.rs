@@ -1,4 +1,4 @@
-//! `[statics]`, `[modes]` and `[dynamics]`.
+//! `formulation`, `[statics]`, `[modes]` and `[dynamics]`.
 
 use crate::file::define::{choice, table};
 use crate::file::dimension::{Dimensionless, Frequency, Time};
@@ -64,6 +64,20 @@ table! {
         /// Time at the end over which means and extremes are reported; absent: the longest period
         /// of the harmonic motions that act, or else the last 10 % of the duration.
         statistics_window: Option<Positive<Time>>,
+    }
+}
+
+choice! {
+    /// Formulations of lines.
+    pub(super) enum FormulationChoice {
+        /// Discrete elements: rigid elements, joined by springs of six components.
+        Dem = "dem",
+        /// Finite elements: corotational beams of two nodes.
+        Fem = "fem",
+        /// Finite elements: geometrically exact beams of two nodes.
+        FemExact = "fem-exact",
+        /// Lumped masses, joined by axial springs, with bending over three nodes; no torsion.
+        Lumped = "lumped",
     }
 }
 

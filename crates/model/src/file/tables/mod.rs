@@ -11,7 +11,9 @@ mod output;
 mod path;
 mod study;
 
-pub(super) use analysis::{DynamicsTable, IntegratorChoice, ModesTable, StaticsTable};
+pub(super) use analysis::{
+    DynamicsTable, FormulationChoice, IntegratorChoice, ModesTable, StaticsTable,
+};
 pub(super) use body::{AnchorTable, BodyTable, VesselTable};
 pub(super) use environment::{
     CurrentPointTable, CurrentTable, EnvironmentTable, FactorTable, SeabedTable,

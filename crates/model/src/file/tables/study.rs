@@ -5,9 +5,9 @@ use crate::file::node::NodeValue;
 use crate::file::read::{Named, Text};
 
 use super::{
-    AnchorTable, BodyTable, DynamicsTable, EnvironmentTable, FigureTable, LineTable, LineTypeTable,
-    LoadTable, ModesTable, MotionTable, OutputTable, PathTable, ReferenceTable, StaticsTable,
-    VesselTable,
+    AnchorTable, BodyTable, DynamicsTable, EnvironmentTable, FigureTable, FormulationChoice,
+    LineTable, LineTypeTable, LoadTable, ModesTable, MotionTable, OutputTable, PathTable,
+    ReferenceTable, StaticsTable, VesselTable,
 };
 
 table! {
@@ -38,6 +38,8 @@ table! {
 table! {
     /// The model.
     pub(super) struct ModelTable {
+        /// How lines become unknowns. All formulations reach the same answers on fine meshes.
+        formulation: FormulationChoice = "dem",
         /// The sea around the system.
         environment: EnvironmentTable,
         /// Cross sections of lines.

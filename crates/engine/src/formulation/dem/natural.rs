@@ -5,9 +5,10 @@
 use catenix_model::{EndConnection, Joint, Line, LineEnd, Model};
 use catenix_numerics::{Matrix3, Vector3, so3};
 
-use super::LineLayout;
-use super::shape::Supports;
+use super::node_stiffness;
 use crate::element::dem::stiffness::ConnectorStiffness;
+use crate::system::LineLayout;
+use crate::system::shape::Supports;
 
 /// Whether it matters how the sections of a line are turned about its axis.
 pub(super) fn has_directions(model: &Model, line: &Line) -> bool {
@@ -92,7 +93,7 @@ pub(super) fn rotations_along(
             None => so3::frame_from_direction(tangent, &so3::any_normal(tangent)),
             Some(before) => {
                 let along: Vector3 = before.column(0).into();
-                let twist = layout.stiffness(model, k).rest_twist();
+                let twist = node_stiffness(model, layout, k).rest_twist();
                 so3::shortest_arc(&along, tangent) * before * about_x(twist)
             }
         });
@@ -103,7 +104,11 @@ pub(super) fn rotations_along(
     } else {
         (layout.element_count, layout.element_count - 1)
     };
-    let own = end_axes(&layout.stiffness(model, node), end, &rotations[element]);
+    let own = end_axes(
+        &node_stiffness(model, layout, node),
+        end,
+        &rotations[element],
+    );
     let wanted = wanted_axes(line, end, &own.column(0).into(), supports);
     let y = own.transpose() * wanted.column(1);
     let roll = about_x(y.z.atan2(y.y));
@@ -138,7 +143,7 @@ pub(super) fn stress_free(
         } else {
             (count - step, count - 1 - step)
         };
-        let stiffness = layout.stiffness(model, node);
+        let stiffness = node_stiffness(model, layout, node);
         let shift = if step == 0 && !clamped {
             0.0
         } else {

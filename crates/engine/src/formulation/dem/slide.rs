@@ -12,7 +12,7 @@ use crate::element::dem::pair::{PairTangent, Sensitivity, Side};
 
 /// A connector's freedom to slide.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Slide {
+pub(super) struct Slide {
     /// Whether the support is the connector's first side.
     pub support_first: bool,
     /// Direction in the connection axes of the support, unit (3).
@@ -21,7 +21,7 @@ pub(crate) struct Slide {
 
 /// A slide that has found its place.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct SlideState {
+pub(super) struct SlideState {
     support_first: bool,
     /// Direction, global, unit (3).
     axis: Vector3,

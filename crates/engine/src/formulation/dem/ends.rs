@@ -2,31 +2,26 @@
 //!
 //! Source: docs/theory/dem.md, eqs. (17) to (21), and docs/theory/sections.md, eq. (14).
 
-use catenix_model::{EndConnection, Joint, Model, SupportRef};
+use catenix_model::{EndConnection, Joint, SupportRef};
 use catenix_numerics::{Matrix3, Vector3, so3};
 
-use super::natural;
-use super::shape::Supports;
+use super::super::Plan;
 use super::slide::Slide;
-use super::{Connector, ConnectorLaw, LineLayout, Mount, Place};
+use super::{Connector, ConnectorLaw, Place, half, natural, node_stiffness};
 use crate::element::dem::joint::{DotLaw, DotSpring, JointStiffness};
+use crate::system::Mount;
 
 /// The connection of a line's end to a vessel or body.
-#[expect(
-    clippy::too_many_arguments,
-    reason = "one call site; a struct would only rename them"
-)]
 pub(super) fn end_connector(
-    model: &Model,
+    plan: &Plan<'_>,
     line: usize,
-    layout: &LineLayout,
     end: usize,
     connection: &EndConnection,
     element: Mount,
     element_rotation: &Matrix3,
-    supports: &Supports,
 ) -> Connector {
-    let support = supports.get(connection.to);
+    let (model, layout) = (plan.model, &plan.layouts[line]);
+    let support = plan.supports.get(connection.to);
     let point = Vector3::from(connection.point_local);
     let direction = Vector3::from(connection.direction_local);
     let tangent: Vector3 = element_rotation.column(0).into();
@@ -35,8 +30,8 @@ pub(super) fn end_connector(
     } else {
         (layout.element_count, layout.element_count - 1)
     };
-    let half = layout.half(model, outermost);
-    let mut stiffness = layout.stiffness(model, node);
+    let half = half(model, layout, outermost);
+    let mut stiffness = node_stiffness(model, layout, node);
     if connection.slides_along.is_some() {
         // The condensed slide has no rate, and its place is found for a linear spring.
         stiffness.damping = 0.0;

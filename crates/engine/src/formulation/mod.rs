@@ -1,0 +1,203 @@
+//! The seam behind which the formulations stand: how lines become frames, forces and results.
+//!
+//! A formulation is one folder here (its glue) and one in `element` (its force kernels). It owes
+//! three things:
+//!
+//! 1. **the plan**: how many frames a line takes ([`frame_count`]), and what they are
+//!    ([`build`], which returns [`Lines`]: frames, first shape, and the formulation itself);
+//! 2. **[`Formulation`]**, what never changes: where things sit on a line, how stiff it is, what
+//!    its frames are called;
+//! 3. **[`Evaluation`]**, the lines at one state: residual and iteration matrix, and afterwards,
+//!    for the state that was assembled last, results at the nodes, forces on the supports,
+//!    energies, momentum, mass.
+//!
+//! Bodies, vessels, lumps, point loads, water, seabed, block solver, integrators and results are
+//! shared. Force kernels are not: otherwise the agreement of two formulations would prove nothing.
+
+pub(crate) mod dem;
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use catenix_model::{FormulationKind, Line, Model};
+use catenix_numerics::{BlockMatrix, Configuration, MotionState, TangentWeights, Vector3, Vector6};
+
+use crate::body::motion::RigidMotion;
+use crate::system::frames::Sea;
+use crate::system::shape::Supports;
+use crate::system::{
+    Carrier, EnergyTerms, Frame, FrameOwner, LineLayout, Momentum, System, SystemError,
+};
+
+/// Number of frames that a line takes.
+pub(crate) fn frame_count(model: &Model, line: &Line, layout: &LineLayout) -> usize {
+    let _ = line;
+    match model.formulation {
+        FormulationKind::Dem => dem::frame_count(layout),
+        _ => 0,
+    }
+}
+
+/// Builds the lines of a model.
+///
+/// # Errors
+/// [`SystemError`] where the formulation cannot do what the model asks for.
+pub(crate) fn build(plan: &Plan<'_>) -> Result<Lines, SystemError> {
+    match plan.model.formulation {
+        FormulationKind::Dem => dem::build(plan),
+        kind => Err(SystemError::Unusable {
+            owner: "formulation".into(),
+            what: kind.word().into(),
+        }),
+    }
+}
+
+/// What a formulation is built from.
+#[derive(Clone, Copy)]
+pub(crate) struct Plan<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// One layout per line of the model; their frames are already numbered.
+    pub layouts: &'a [LineLayout],
+    /// Where ends can be connected, in the first shape.
+    pub supports: &'a Supports,
+}
+
+/// The lines of a model as a formulation sees them.
+pub(crate) struct Lines {
+    /// Properties of the frames of all lines, line by line from end A (n_line_frames).
+    pub frames: Vec<Frame>,
+    /// First shape of these frames (n_line_frames).
+    pub shape: Configuration,
+    /// The formulation with all its constants.
+    pub formulation: Arc<dyn Formulation>,
+}
+
+/// A point on a frame, with the share of a thing that it takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Spot {
+    /// The frame.
+    pub frame: usize,
+    /// From the frame's origin, in its own axes (3) [m].
+    pub arm: Vector3,
+    /// Share, 0 to 1; the shares of one thing add up to 1 [-].
+    pub share: f64,
+}
+
+/// What never changes of the lines of a system.
+pub(crate) trait Formulation: Debug + Send + Sync {
+    /// Room to evaluate the lines of `system`, at its first shape.
+    fn evaluation(self: Arc<Self>, at: &Instant<'_>) -> Box<dyn Evaluation>;
+
+    /// Where a thing at an unstretched distance from end A [m] sits.
+    fn spots(&self, layout: &LineLayout, arc_length: f64) -> Vec<Spot>;
+
+    /// What frame `index` of a line is called, counted from end A.
+    fn owner(&self, line: &Line, layout: &LineLayout, index: usize) -> FrameOwner;
+
+    /// Stiffest spring against a displacement [N/m]: round-off in the residual is proportional to it.
+    fn stiffest(&self) -> f64;
+
+    /// Largest product of a spring's stiffness and the softness of a frame that it acts on.
+    fn stiffest_over(&self, frames: &[Frame], softness: &dyn Fn(&Frame) -> f64) -> f64;
+}
+
+/// A state of the system with its surroundings.
+#[derive(Clone, Copy)]
+pub(crate) struct Instant<'a> {
+    /// The system.
+    pub system: &'a System,
+    /// Water and seabed at this time.
+    pub sea: Sea<'a>,
+    /// Motions of the vessels at this time.
+    pub vessels: &'a [RigidMotion],
+    /// Configuration, velocities and accelerations of all frames.
+    pub state: &'a MotionState,
+}
+
+impl Instant<'_> {
+    /// Motion of a frame or vessel.
+    pub fn carrier(&self, carrier: Carrier) -> RigidMotion {
+        match carrier {
+            Carrier::Free(k) => RigidMotion {
+                position: self.state.configuration.position[k],
+                rotation: self.state.configuration.rotation[k],
+                velocity: self.state.velocity[k].fixed_rows::<3>(0).into_owned(),
+                spin: self.state.velocity[k].fixed_rows::<3>(3).into_owned(),
+            },
+            Carrier::Vessel(k) => self.vessels[k],
+        }
+    }
+}
+
+/// Local results at a node of a line.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct NodeResult {
+    /// Position (3) [m].
+    pub position: Vector3,
+    /// Direction of the line towards end B, unit (3).
+    pub axis: Vector3,
+    /// Effective tension [N].
+    pub tension: f64,
+    /// Shear force [N].
+    pub shear: f64,
+    /// Bending moment [N m].
+    pub bend_moment: f64,
+    /// Torque [N m]; NaN where the formulation has none.
+    pub torque: f64,
+    /// Curvature [1/m].
+    pub curvature: f64,
+}
+
+/// The lines of a system at a state, with the room that this needs.
+///
+/// Everything but [`Self::assemble`] speaks of the state that was assembled last, which callers
+/// hand in again.
+pub(crate) trait Evaluation: Debug + Send {
+    /// A copy.
+    fn duplicate(&self) -> Box<dyn Evaluation>;
+
+    /// Adds inertia + internal forces - loads of all lines to `residual` (frame_count) [N, N m] and,
+    /// with `weights`, the derivative by the increments of the frames to `matrix`: on the line's own
+    /// frames, and between its first and last frame and the body that it ends on.
+    fn assemble(
+        &mut self,
+        at: &Instant<'_>,
+        weights: Option<&TangentWeights<'_>>,
+        residual: &mut [Vector6],
+        matrix: &mut BlockMatrix,
+    );
+
+    /// Told before the first iteration of a solution.
+    fn begin(&mut self);
+
+    /// Told of the increment of the frames (frame_count) that is about to be applied.
+    fn moving(&mut self, at: &System, increment: &[Vector6]);
+
+    /// Local results at a node, counted from end A (0 to n_elements).
+    fn node(&self, at: &Instant<'_>, line: usize, node: usize) -> NodeResult;
+
+    /// Force and moment, about the connection point, of a line on what its end (0 or 1) is
+    /// connected to (6) [N, N m]; zero for a free end.
+    fn end_load(&self, at: &Instant<'_>, line: usize, end: usize) -> Vector6;
+
+    /// Adds energies of the lines and the powers that change them.
+    fn add_energy(&self, at: &Instant<'_>, terms: &mut EnergyTerms);
+
+    /// Adds the momentum of the lines, without added mass.
+    fn add_momentum(&self, at: &Instant<'_>, momentum: &mut Momentum);
+
+    /// Adds the mass matrix of the lines, symmetric, with the added mass if `in_water`.
+    fn add_mass(&self, at: &Instant<'_>, in_water: bool, mass: &mut BlockMatrix);
+
+    /// Power that structural damping takes at the velocities of `at`, which need not be those
+    /// that were assembled [W].
+    fn structural_damping(&self, at: &Instant<'_>) -> f64;
+
+    /// Gives frames that could turn by themselves, without moving anything, a stiffness against it.
+    fn hold_idle_spins(&self, at: &Instant<'_>, matrix: &mut BlockMatrix);
+
+    /// Small motion of the nodes of a line for the small motion `x` of the frames (frame_count):
+    /// translations and rotations, (n_elements + 1).
+    fn motion_at_nodes(&self, at: &Instant<'_>, x: &[Vector6], line: usize) -> Vec<Vector6>;
+}
