@@ -192,6 +192,7 @@ fn case_attributes(case: &LoadCase) -> Attributes {
     attributes.insert("description".into(), case.description.as_str().into());
     attributes.insert(layout::STATUS_KEY.into(), Status::Pending.word().into());
     let layout_text = serde_json::to_string(&layout::case_layout(case)).unwrap_or_default();
+    attributes.insert("formulation".into(), model.formulation.word().into());
     attributes.insert(layout::LAYOUT_KEY.into(), layout_text.into());
     let scene_text = serde_json::to_string(&Scene::new(model)).unwrap_or_default();
     attributes.insert(layout::SCENE_KEY.into(), scene_text.into());

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::read::ReadTable;
 use super::schema::describe_quantity;
-use super::shape::{Shape, TableShape};
+use super::shape::{FieldShape, Shape, TableShape};
 use super::tables::{CaseTable, ModelTable, StudyTable};
 
 /// Every table of the model file with its keys, units and defaults, in Markdown.
@@ -12,10 +12,14 @@ use super::tables::{CaseTable, ModelTable, StudyTable};
 /// It is the second half of `docs/model-file.md`; a test keeps the two the same.
 pub fn reference_markdown() -> String {
     let mut page = String::new();
+    let model = ModelTable::table_shape();
     let mut top = StudyTable::table_shape();
     top.doc = "Keys at the top of the file.".to_owned();
+    // What the model has beside tables.
+    let plain = |field: &&FieldShape| matches!(field.shape, Shape::Choice(_));
+    top.fields
+        .extend(model.fields.iter().filter(plain).cloned());
     write_table(&mut page, "", &top);
-    let model = ModelTable::table_shape();
     for field in &model.fields {
         write_shape(&mut page, field.key, &field.doc, &field.shape);
     }

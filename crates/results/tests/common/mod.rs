@@ -162,6 +162,7 @@ fn model() -> Model {
         offset_vessel: Some(0),
     };
     Model {
+        formulation: catenix_model::FormulationKind::Dem,
         title: "Synthetic".into(),
         environment: Environment {
             gravity: 9.80665,
