@@ -87,7 +87,7 @@ pub(crate) struct Spot {
 /// What never changes of the lines of a system.
 pub(crate) trait Formulation: Debug + Send + Sync {
     /// Room to evaluate the lines of `system`, at its first shape.
-    fn evaluation(self: Arc<Self>, at: &Instant<'_>) -> Box<dyn Evaluation>;
+    fn evaluation(self: Arc<Self>, at: &Situation<'_>) -> Box<dyn Evaluation>;
 
     /// Where a thing at an unstretched distance from end A [m] sits.
     fn spots(&self, layout: &LineLayout, arc_length: f64) -> Vec<Spot>;
@@ -104,7 +104,7 @@ pub(crate) trait Formulation: Debug + Send + Sync {
 
 /// A state of the system with its surroundings.
 #[derive(Clone, Copy)]
-pub(crate) struct Instant<'a> {
+pub(crate) struct Situation<'a> {
     /// The system.
     pub system: &'a System,
     /// Water and seabed at this time.
@@ -115,7 +115,7 @@ pub(crate) struct Instant<'a> {
     pub state: &'a MotionState,
 }
 
-impl Instant<'_> {
+impl Situation<'_> {
     /// Motion of a frame or vessel.
     pub fn carrier(&self, carrier: Carrier) -> RigidMotion {
         match carrier {
@@ -162,7 +162,7 @@ pub(crate) trait Evaluation: Debug + Send {
     /// frames, and between its first and last frame and the body that it ends on.
     fn assemble(
         &mut self,
-        at: &Instant<'_>,
+        at: &Situation<'_>,
         weights: Option<&TangentWeights<'_>>,
         residual: &mut [Vector6],
         matrix: &mut BlockMatrix,
@@ -175,29 +175,29 @@ pub(crate) trait Evaluation: Debug + Send {
     fn moving(&mut self, at: &System, increment: &[Vector6]);
 
     /// Local results at a node, counted from end A (0 to n_elements).
-    fn node(&self, at: &Instant<'_>, line: usize, node: usize) -> NodeResult;
+    fn node(&self, at: &Situation<'_>, line: usize, node: usize) -> NodeResult;
 
     /// Force and moment, about the connection point, of a line on what its end (0 or 1) is
     /// connected to (6) [N, N m]; zero for a free end.
-    fn end_load(&self, at: &Instant<'_>, line: usize, end: usize) -> Vector6;
+    fn end_load(&self, at: &Situation<'_>, line: usize, end: usize) -> Vector6;
 
     /// Adds energies of the lines and the powers that change them.
-    fn add_energy(&self, at: &Instant<'_>, terms: &mut EnergyTerms);
+    fn add_energy(&self, at: &Situation<'_>, terms: &mut EnergyTerms);
 
     /// Adds the momentum of the lines, without added mass.
-    fn add_momentum(&self, at: &Instant<'_>, momentum: &mut Momentum);
+    fn add_momentum(&self, at: &Situation<'_>, momentum: &mut Momentum);
 
     /// Adds the mass matrix of the lines, symmetric, with the added mass if `in_water`.
-    fn add_mass(&self, at: &Instant<'_>, in_water: bool, mass: &mut BlockMatrix);
+    fn add_mass(&self, at: &Situation<'_>, in_water: bool, mass: &mut BlockMatrix);
 
     /// Power that structural damping takes at the velocities of `at`, which need not be those
     /// that were assembled [W].
-    fn structural_damping(&self, at: &Instant<'_>) -> f64;
+    fn structural_damping(&self, at: &Situation<'_>) -> f64;
 
     /// Gives frames that could turn by themselves, without moving anything, a stiffness against it.
-    fn hold_idle_spins(&self, at: &Instant<'_>, matrix: &mut BlockMatrix);
+    fn hold_idle_spins(&self, at: &Situation<'_>, matrix: &mut BlockMatrix);
 
     /// Small motion of the nodes of a line for the small motion `x` of the frames (frame_count):
     /// translations and rotations, (n_elements + 1).
-    fn motion_at_nodes(&self, at: &Instant<'_>, x: &[Vector6], line: usize) -> Vec<Vector6>;
+    fn motion_at_nodes(&self, at: &Situation<'_>, x: &[Vector6], line: usize) -> Vec<Vector6>;
 }

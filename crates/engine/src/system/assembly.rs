@@ -6,11 +6,11 @@ use catenix_numerics::{BlockMatrix, TangentWeights, Vector6};
 
 use super::frames::{self, FrameWeights, frame_motion};
 use super::loads;
-use crate::formulation::{Evaluation, Instant};
+use crate::formulation::{Evaluation, Situation};
 
-/// Evaluates everything at an instant: residual and, with `weights`, the matrix.
+/// Evaluates everything in a situation: residual and, with `weights`, the matrix.
 pub(super) fn assemble(
-    at: &Instant<'_>,
+    at: &Situation<'_>,
     load_factors: &[f64],
     weights: Option<&TangentWeights<'_>>,
     lines: &mut dyn Evaluation,
@@ -38,7 +38,7 @@ pub(super) fn assemble(
 
 /// Adds inertia minus loads of rigid frames, and with `weights` their derivatives.
 pub(crate) fn add_frames(
-    at: &Instant<'_>,
+    at: &Situation<'_>,
     range: Range<usize>,
     weights: Option<&TangentWeights<'_>>,
     residual: &mut [Vector6],

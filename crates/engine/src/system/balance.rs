@@ -35,7 +35,7 @@ impl StepView<'_> {
     /// Source: docs/theory/energy.md, eq. (4).
     pub fn momentum(&self) -> Momentum {
         let system = self.solver.system;
-        let at = self.solver.instant(self.time, self.state);
+        let at = self.solver.situation(self.time, self.state);
         let mut momentum = Momentum {
             linear: Vector3::zeros(),
             angular: Vector3::zeros(),

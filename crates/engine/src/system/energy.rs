@@ -64,7 +64,7 @@ impl EnergyTerms {
 impl SystemSolver<'_> {
     /// Energies and powers at `state`, which was the last one assembled.
     pub fn energy_terms(&self, time: f64, state: &MotionState) -> EnergyTerms {
-        let at = self.instant(time, state);
+        let at = self.situation(time, state);
         let mut terms = EnergyTerms::default();
         self.lines.add_energy(&at, &mut terms);
         for k in self.system.body_frame(0)..self.system.frames.len() {

@@ -23,7 +23,7 @@ impl SystemSolver<'_> {
         self.assemble(0.0, state, Some(&weights), &mut residual);
         let mut matrix = std::mem::take(&mut self.matrix);
         self.lines
-            .hold_idle_spins(&self.instant(0.0, state), &mut matrix);
+            .hold_idle_spins(&self.situation(0.0, state), &mut matrix);
         self.matrix = matrix;
         &self.matrix
     }
@@ -32,7 +32,7 @@ impl SystemSolver<'_> {
     ///
     /// Source: docs/theory/modes.md, eq. (2).
     pub(crate) fn mass(&self, state: &MotionState, in_water: bool) -> BlockMatrix {
-        let at = self.instant(0.0, state);
+        let at = self.situation(0.0, state);
         let system = self.system;
         let mut mass = BlockMatrix::zeros(&system.topology);
         self.lines.add_mass(&at, in_water, &mut mass);
@@ -53,7 +53,7 @@ impl SystemSolver<'_> {
     /// velocities `v` [W].
     pub(crate) fn structural_damping(&self, state: &mut MotionState, v: &[Vector6]) -> f64 {
         state.velocity.copy_from_slice(v);
-        let power = self.lines.structural_damping(&self.instant(0.0, state));
+        let power = self.lines.structural_damping(&self.situation(0.0, state));
         state.velocity.fill(Vector6::zeros());
         power
     }
@@ -67,7 +67,7 @@ impl SystemSolver<'_> {
         line: usize,
     ) -> Vec<Vector6> {
         self.lines
-            .motion_at_nodes(&self.instant(0.0, state), x, line)
+            .motion_at_nodes(&self.situation(0.0, state), x, line)
     }
 }
 

@@ -9,7 +9,7 @@ use super::System;
 use super::frames::Sea;
 use super::{assembly, loads};
 use crate::body::motion::RigidMotion;
-use crate::formulation::{Evaluation, Instant};
+use crate::formulation::{Evaluation, Situation};
 use crate::load::variation;
 
 /// Loads that one factor scales, whatever their variation over time.
@@ -65,7 +65,7 @@ impl<'a> SystemSolver<'a> {
             load_control: None,
             load_factors: vec![0.0; system.model.loads.len()],
             lines: {
-                let at = Instant {
+                let at = Situation {
                     system,
                     sea: sea(system, 0.0, current_acts),
                     vessels: &vessels,
@@ -139,8 +139,8 @@ impl<'a> SystemSolver<'a> {
     }
 
     /// `state` with its surroundings; the vessels are where the last assembly put them.
-    pub(super) fn instant<'s>(&'s self, time: f64, state: &'s MotionState) -> Instant<'s> {
-        Instant {
+    pub(super) fn situation<'s>(&'s self, time: f64, state: &'s MotionState) -> Situation<'s> {
+        Situation {
             system: self.system,
             sea: sea(self.system, time, self.current_acts),
             vessels: &self.vessels,
@@ -210,7 +210,7 @@ impl ImplicitSystem for SystemSolver<'_> {
                 self.load_factors[load] = control.factor;
             }
         }
-        let at = Instant {
+        let at = Situation {
             system: self.system,
             sea: sea(self.system, time, self.current_acts),
             vessels: &self.vessels,

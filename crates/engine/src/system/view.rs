@@ -4,7 +4,7 @@ use catenix_model::{Axis, ChannelTarget, LineQuantity};
 use catenix_numerics::{MotionState, Vector3, Vector6, so3};
 
 use super::solver::SystemSolver;
-use crate::formulation::{Instant, NodeResult};
+use crate::formulation::{NodeResult, Situation};
 
 /// A state as results see it. Valid for the state that was assembled last.
 pub struct StepView<'a> {
@@ -146,15 +146,15 @@ impl StepView<'_> {
 
     /// Force and moment (about the connection point) of a line on what its end is connected to.
     fn end_load(&self, line: usize, end: usize) -> Vector6 {
-        self.solver.lines.end_load(&self.instant(), line, end)
+        self.solver.lines.end_load(&self.situation(), line, end)
     }
 
     fn node(&self, line: usize, node: usize) -> NodeResult {
-        self.solver.lines.node(&self.instant(), line, node)
+        self.solver.lines.node(&self.situation(), line, node)
     }
 
-    fn instant(&self) -> Instant<'_> {
-        self.solver.instant(self.time, self.state)
+    fn situation(&self) -> Situation<'_> {
+        self.solver.situation(self.time, self.state)
     }
 
     fn quantities(&self, line: usize, node: usize) -> [f64; 11] {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use catenix_numerics::{BlockMatrix, Matrix3, TangentWeights, Vector3, Vector6};
 
-use super::super::{Evaluation, Instant, NodeResult};
+use super::super::{Evaluation, NodeResult, Situation};
 use super::pairs::{EvaluatedPair, scatter};
 use super::{ConnectorLaw, Dem, element_end, nodes};
 use crate::element::dem::connector::Prediction;
@@ -23,7 +23,7 @@ pub(super) struct DemEvaluation {
 }
 
 impl DemEvaluation {
-    pub(super) fn new(dem: Arc<Dem>, at: &Instant<'_>) -> DemEvaluation {
+    pub(super) fn new(dem: Arc<Dem>, at: &Situation<'_>) -> DemEvaluation {
         let new = |connector| EvaluatedPair::new(connector, at);
         DemEvaluation {
             pairs: dem.connectors.iter().map(new).collect(),
@@ -41,7 +41,7 @@ impl Evaluation for DemEvaluation {
 
     fn assemble(
         &mut self,
-        at: &Instant<'_>,
+        at: &Situation<'_>,
         weights: Option<&TangentWeights<'_>>,
         residual: &mut [Vector6],
         matrix: &mut BlockMatrix,
@@ -88,15 +88,15 @@ impl Evaluation for DemEvaluation {
         self.has_prediction = true;
     }
 
-    fn node(&self, at: &Instant<'_>, line: usize, node: usize) -> NodeResult {
+    fn node(&self, at: &Situation<'_>, line: usize, node: usize) -> NodeResult {
         nodes::node(self, at, line, node)
     }
 
-    fn end_load(&self, at: &Instant<'_>, line: usize, end: usize) -> Vector6 {
+    fn end_load(&self, at: &Situation<'_>, line: usize, end: usize) -> Vector6 {
         nodes::end_load(self, at, line, end)
     }
 
-    fn add_energy(&self, at: &Instant<'_>, terms: &mut EnergyTerms) {
+    fn add_energy(&self, at: &Situation<'_>, terms: &mut EnergyTerms) {
         let system = at.system;
         for k in 0..system.body_frame(0) {
             let motion = frame_motion(at.state, k);
@@ -119,13 +119,13 @@ impl Evaluation for DemEvaluation {
         }
     }
 
-    fn add_momentum(&self, at: &Instant<'_>, momentum: &mut Momentum) {
+    fn add_momentum(&self, at: &Situation<'_>, momentum: &mut Momentum) {
         for k in 0..at.system.body_frame(0) {
             momentum.add_frame(&at.system.frames[k], &frame_motion(at.state, k));
         }
     }
 
-    fn add_mass(&self, at: &Instant<'_>, in_water: bool, mass: &mut BlockMatrix) {
+    fn add_mass(&self, at: &Situation<'_>, in_water: bool, mass: &mut BlockMatrix) {
         for k in 0..at.system.body_frame(0) {
             let motion = frame_motion(at.state, k);
             let own = frames::frame_mass(&at.system.frames[k], &motion, &at.sea, in_water);
@@ -133,7 +133,7 @@ impl Evaluation for DemEvaluation {
         }
     }
 
-    fn structural_damping(&self, at: &Instant<'_>) -> f64 {
+    fn structural_damping(&self, at: &Situation<'_>) -> f64 {
         let power = |connector| EvaluatedPair::new(connector, at).damping_power();
         -self.dem.connectors.iter().map(power).sum::<f64>()
     }
@@ -141,7 +141,7 @@ impl Evaluation for DemEvaluation {
     /// Elements that meet no torsional stiffness at all (chains, ropes without it) could spin about
     /// their axis each by itself. They are given a stiffness that makes their spin as fast as the
     /// extension of one element.
-    fn hold_idle_spins(&self, at: &Instant<'_>, matrix: &mut BlockMatrix) {
+    fn hold_idle_spins(&self, at: &Situation<'_>, matrix: &mut BlockMatrix) {
         let system = at.system;
         let mut idle = vec![true; system.body_frame(0)];
         let mut axial = vec![0.0f64; idle.len()];
@@ -171,7 +171,7 @@ impl Evaluation for DemEvaluation {
     /// At each node the mean of the two elements that meet there, and at an end the support.
     ///
     /// Source: docs/theory/modes.md, eq. (18).
-    fn motion_at_nodes(&self, at: &Instant<'_>, x: &[Vector6], line: usize) -> Vec<Vector6> {
+    fn motion_at_nodes(&self, at: &Situation<'_>, x: &[Vector6], line: usize) -> Vec<Vector6> {
         let layout = &at.system.lines[line];
         let nodes = &self.dem.nodes[line];
         (0..=layout.element_count)

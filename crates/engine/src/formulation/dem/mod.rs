@@ -14,7 +14,7 @@ use std::sync::Arc;
 use catenix_model::{Line, LineEnd, LineType, Model};
 use catenix_numerics::{Configuration, Matrix3, Vector3};
 
-use super::{Evaluation, Formulation, Instant, Lines, Plan, Spot};
+use super::{Evaluation, Formulation, Lines, Plan, Situation, Spot};
 use crate::element::dem::joint::JointStiffness;
 use crate::element::dem::stiffness::{ConnectorStiffness, HalfElement, rotary_share};
 use crate::hydro::morison::DragCoefficients;
@@ -260,7 +260,7 @@ impl Dem {
 }
 
 impl Formulation for Dem {
-    fn evaluation(self: Arc<Self>, at: &Instant<'_>) -> Box<dyn Evaluation> {
+    fn evaluation(self: Arc<Self>, at: &Situation<'_>) -> Box<dyn Evaluation> {
         Box::new(DemEvaluation::new(self, at))
     }
 

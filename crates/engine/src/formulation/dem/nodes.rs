@@ -3,7 +3,7 @@
 use catenix_model::Model;
 use catenix_numerics::{Vector3, Vector6};
 
-use super::super::{Instant, NodeResult};
+use super::super::{NodeResult, Situation};
 use super::ConnectorLaw;
 use super::evaluation::DemEvaluation;
 use super::pairs::{EvaluatedPair, PairState};
@@ -11,7 +11,12 @@ use crate::element::dem::pair::six;
 use crate::system::LineLayout;
 
 /// Force and moment (about the connection point) of a line on what its end is connected to.
-pub(super) fn end_load(own: &DemEvaluation, at: &Instant<'_>, line: usize, end: usize) -> Vector6 {
+pub(super) fn end_load(
+    own: &DemEvaluation,
+    at: &Situation<'_>,
+    line: usize,
+    end: usize,
+) -> Vector6 {
     let layout = &at.system.lines[line];
     let node = if end == 0 { 0 } else { layout.element_count };
     let Some(index) = own.dem.nodes[line][node] else {
@@ -33,7 +38,12 @@ pub(super) fn end_load(own: &DemEvaluation, at: &Instant<'_>, line: usize, end: 
 }
 
 /// Results at a node.
-pub(super) fn node(own: &DemEvaluation, at: &Instant<'_>, line: usize, node: usize) -> NodeResult {
+pub(super) fn node(
+    own: &DemEvaluation,
+    at: &Situation<'_>,
+    line: usize,
+    node: usize,
+) -> NodeResult {
     let layout = &at.system.lines[line];
     let model = &at.system.model;
     let Some(index) = own.dem.nodes[line][node] else {
@@ -123,7 +133,7 @@ fn section_curvature(
 }
 
 /// A free end carries nothing.
-fn free_end(at: &Instant<'_>, layout: &LineLayout, node: usize) -> NodeResult {
+fn free_end(at: &Situation<'_>, layout: &LineLayout, node: usize) -> NodeResult {
     let at_b = node > 0;
     let element = if at_b { node - 1 } else { 0 };
     let frame = layout.first_frame + element;
@@ -141,7 +151,7 @@ fn free_end(at: &Instant<'_>, layout: &LineLayout, node: usize) -> NodeResult {
 /// Axis of a line at its very end, extrapolated from the two elements there.
 ///
 /// Source: docs/theory/results.md, eq. (10).
-fn end_axis(at: &Instant<'_>, layout: &LineLayout, node: usize) -> Vector3 {
+fn end_axis(at: &Situation<'_>, layout: &LineLayout, node: usize) -> Vector3 {
     let (end, next) = if node == 0 {
         (0, 1)
     } else {

@@ -3,7 +3,7 @@
 
 use catenix_numerics::{Block6, BlockMatrix, Matrix3, Topology, Vector3, Vector6};
 
-use super::super::Instant;
+use super::super::Situation;
 use super::slide::SlideState;
 use super::{Connector, ConnectorLaw, Place};
 use crate::element::dem::connector::{ConnectorState, Prediction};
@@ -67,7 +67,7 @@ pub(super) struct EvaluatedPair {
 }
 
 impl EvaluatedPair {
-    pub(super) fn new(connector: &Connector, at: &Instant<'_>) -> EvaluatedPair {
+    pub(super) fn new(connector: &Connector, at: &Situation<'_>) -> EvaluatedPair {
         let mut first = side(&connector.first, at);
         let mut second = side(&connector.second, at);
         let law = &connector.law;
@@ -167,7 +167,7 @@ impl EvaluatedPair {
     }
 }
 
-fn side(mount: &Mount, at: &Instant<'_>) -> Side {
+fn side(mount: &Mount, at: &Situation<'_>) -> Side {
     let own = at.carrier(mount.carrier);
     let lever = own.rotation * mount.arm;
     Side {
