@@ -3,7 +3,7 @@
 //!
 //! Source: docs/theory/sections.md, eqs. (5) to (12).
 
-use super::curve::Curve;
+use crate::element::curve::Curve;
 
 /// The general part of a connector's law. A connector without it is straight, linear and the same
 /// about all normal axes.

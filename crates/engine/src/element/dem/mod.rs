@@ -3,7 +3,7 @@
 
 mod bend;
 pub mod connector;
-mod curve;
+
 pub mod joint;
 mod law;
 pub mod pair;

@@ -3,11 +3,11 @@
 use catenix_numerics::{Matrix3, Vector3, Vector6, so3};
 
 use super::connector::ConnectorState;
-use super::curve::Curve;
 use super::joint::{DotLaw, DotSpring, JointState, JointStiffness};
 use super::law::{BendLaw, GeneralLaw};
 use super::pair::{PairForces, PairTangent, RateWeights, Sensitivity, Side};
 use super::stiffness::ConnectorStiffness;
+use crate::element::curve::Curve;
 
 /// A frame with a connection point, as the system holds it.
 #[derive(Clone, Copy)]
