@@ -1,9 +1,12 @@
 //! The read-back check: xarray opens the stores that the results crate writes, and finds every
-//! value, unit and dimension that was written, also after an interrupted and a killed run.
+//! value, unit and dimension that was written, also after an interrupted and a killed run; and what
+//! the export crate makes of these stores opens in the programs that it is for.
 //!
 //! A program of the results crate writes stores whose values follow formulas;
-//! `crates/results/tests/read_back.py` reads them and knows the same formulas. Python and its
-//! packages live in a virtual environment of their own below the target folder.
+//! `crates/results/tests/read_back.py` reads them and knows the same formulas. A program of the
+//! export crate exports them in every format; `crates/export/tests/read_back.py` compares every
+//! value with the store. Python and its packages live in a virtual environment of their own below
+//! the target folder.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,6 +19,11 @@ use crate::steps::{cargo, run_command};
 const SCRIPT: &str = "crates/results/tests/read_back.py";
 /// The example of the results crate that writes the stores.
 const WRITER: &str = "synthetic_store";
+const EXPORT_SCRIPT: &str = "crates/export/tests/read_back.py";
+/// The example of the export crate that exports a store in every format.
+const EXPORTER: &str = "export_all";
+/// Stores that are written and exported.
+const STORES: [&str; 3] = ["complete", "interrupted", "killed"];
 const REQUIREMENTS: &str = "xtask/read-back-requirements.txt";
 
 /// Writes stores and reads them back with Python.
@@ -24,20 +32,37 @@ pub(crate) fn run(root: &Path) -> Result<(), String> {
     let python = environment(root, &target.join("read-back-venv"))?;
     let stores = empty_folder(&target.join("read-back-stores"))?;
     write_stores(root, &target, &stores)?;
-    run_command(Command::new(python).arg(root.join(SCRIPT)).arg(&stores))
+    run_command(Command::new(&python).arg(root.join(SCRIPT)).arg(&stores))?;
+    let exports = empty_folder(&target.join("read-back-exports"))?;
+    build(root, EXPORTER)?;
+    for store in STORES {
+        let (store, export) = (stores.join(store), exports.join(store));
+        run_command(Command::new(program(&target, EXPORTER)).args([&store, &export]))?;
+        let mut check = Command::new(&python);
+        run_command(check.arg(root.join(EXPORT_SCRIPT)).args([&store, &export]))?;
+    }
+    Ok(())
+}
+
+/// Builds an example as the tests are built, for the whole workspace: with the features that one
+/// package alone would ask for, cargo would compile most dependencies again.
+fn build(root: &Path, example: &str) -> Result<(), String> {
+    run_command(&mut cargo(
+        root,
+        &["build", "--workspace", "--example", example],
+    ))
+}
+
+fn program(target: &Path, example: &str) -> PathBuf {
+    let name = format!("{example}{}", std::env::consts::EXE_SUFFIX);
+    target.join("debug").join("examples").join(name)
 }
 
 /// Runs the program that writes the stores. It writes the last one half and then aborts, as a
 /// killed run would; any other end is a failure.
 fn write_stores(root: &Path, target: &Path, stores: &Path) -> Result<(), String> {
-    // Built as the tests are, for the whole workspace: with the features that one package alone
-    // would ask for, cargo would compile most dependencies again.
-    run_command(&mut cargo(
-        root,
-        &["build", "--workspace", "--example", WRITER],
-    ))?;
-    let program = format!("{WRITER}{}", std::env::consts::EXE_SUFFIX);
-    let status = Command::new(target.join("debug").join("examples").join(program))
+    build(root, WRITER)?;
+    let status = Command::new(program(target, WRITER))
         .arg(stores)
         .status()
         .map_err(|error| format!("`{WRITER}` did not start: {error}"))?;
@@ -101,6 +126,8 @@ fn environment(root: &Path, folder: &Path) -> Result<PathBuf, String> {
         "-m",
         "pip",
         "install",
+        // The list is complete; what it leaves out of a package's wishes is not needed.
+        "--no-deps",
         "--quiet",
         "--disable-pip-version-check",
     ]);

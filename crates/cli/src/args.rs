@@ -4,9 +4,11 @@ use std::net::IpAddr;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+use catenix_export::{ExportFormat, Thinning};
 use catenix_model::ModeRange;
 use catenix_model::file::parse_band;
-use clap::{Args, Parser, Subcommand};
+use clap::builder::PossibleValue;
+use clap::{Args, Parser, Subcommand, ValueEnum};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -46,6 +48,9 @@ pub(crate) enum Command {
     /// Print the summary of results, also of an interrupted run
     #[command(after_help = EXIT_CODES)]
     Summary(SummaryArgs),
+    /// Export results as tables, for ParaView, or as NetCDF
+    #[command(after_help = EXIT_CODES)]
+    Export(ExportArgs),
     /// Compute published cases and hold them against their references
     #[command(after_help = EXIT_CODES)]
     Verify(VerifyArgs),
@@ -180,6 +185,62 @@ pub(crate) struct SummaryArgs {
     pub(crate) results: PathBuf,
     #[command(flatten)]
     pub(crate) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportArgs {
+    /// Directory that `catenix run` wrote, or the results.zarr in it
+    #[arg(value_name = "RESULTS")]
+    pub(crate) results: PathBuf,
+    /// File format: tables as csv or parquet, series of poly-data as vtk, one netcdf file per case
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) to: FormatArg,
+    /// Directory for the files [default: `export/` and the format, beside results.zarr]
+    #[arg(long, short, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Take only this load case; may be given several times
+    #[arg(long = "case", value_name = "NAME")]
+    pub(crate) cases: Vec<String>,
+    /// Take only this line, and all vessels, bodies and channels; may be given several times
+    #[arg(long = "line", value_name = "NAME")]
+    pub(crate) lines: Vec<String>,
+    /// Take the first stored row and every N-th after it
+    #[arg(long, value_name = "N", conflicts_with = "times")]
+    pub(crate) every: Option<NonZeroUsize>,
+    /// Take the stored rows from one time to another, in seconds; with a step, those nearest to it
+    #[arg(long, value_name = "FROM:TO[:STEP]", allow_hyphen_values = true)]
+    pub(crate) times: Option<Thinning>,
+    /// Write every quantity at every node and time too, one row each (csv and parquet)
+    #[arg(long)]
+    pub(crate) fields: bool,
+    /// Replace files of an earlier export
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Show no progress
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+    #[command(flatten)]
+    pub(crate) output: OutputArgs,
+}
+
+/// File formats of an export, by their words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct FormatArg(pub(crate) ExportFormat);
+
+impl ValueEnum for FormatArg {
+    fn value_variants<'a>() -> &'a [Self] {
+        const ALL: [FormatArg; 4] = [
+            FormatArg(ExportFormat::Csv),
+            FormatArg(ExportFormat::Parquet),
+            FormatArg(ExportFormat::Vtk),
+            FormatArg(ExportFormat::Netcdf),
+        ];
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.0.word()))
+    }
 }
 
 #[derive(Debug, Args)]

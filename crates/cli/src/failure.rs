@@ -1,5 +1,6 @@
 //! Why a command ends early, and with which exit code.
 
+use catenix_export::ExportError;
 use catenix_model::file::ModelFileErrors;
 use catenix_report::ReportError;
 use catenix_results::StoreError;
@@ -28,6 +29,8 @@ pub(crate) enum Failure {
     System { case: String, message: String },
     #[error(transparent)]
     Store(#[from] StoreError),
+    #[error(transparent)]
+    Export(#[from] ExportError),
     #[error(transparent)]
     Report(#[from] ReportError),
     #[error(transparent)]
@@ -63,6 +66,11 @@ impl Failure {
             | Failure::Report(_)
             | Failure::Read { .. }
             | Failure::Start { .. } => Exit::InputOutput,
+            Failure::Export(error) => match error {
+                ExportError::UnknownName { .. } | ExportError::NoRows { .. } => Exit::Usage,
+                ExportError::Interrupted => Exit::Interrupted,
+                _ => Exit::InputOutput,
+            },
             Failure::Verification(error) => match error {
                 VerificationError::Spec { .. } | VerificationError::Model(_) => Exit::Model,
                 _ => Exit::InputOutput,
@@ -79,6 +87,7 @@ impl Failure {
             Failure::System { .. } => "model::system",
             Failure::Store(error) => error.code(),
             Failure::Viewer(error) => error.code(),
+            Failure::Export(error) => error.code(),
             Failure::Report(error) => error.code(),
             Failure::UnknownCase { .. } => "usage::unknown_case",
             Failure::UnknownChannel { .. } => "usage::unknown_channel",

@@ -26,6 +26,7 @@ fn main() -> ExitCode {
         Command::Path(args) => ("path", args.output.json, commands::path(args)),
         Command::Run(args) => ("run", args.output.json, commands::run(args)),
         Command::Summary(args) => ("summary", args.output.json, commands::summary(args)),
+        Command::Export(args) => ("export", args.output.json, commands::export(args)),
         Command::Verify(args) => ("verify", args.output.json, commands::verify(args)),
         Command::View(args) => ("view", false, commands::view(args)),
         Command::Schema => ("schema", false, commands::schema()),

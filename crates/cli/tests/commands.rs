@@ -117,6 +117,7 @@ fn json_documents_have_the_keys_that_the_guide_lists() {
         &["modes", "model.toml", "--count", "4"],
         &["run", "model.toml", "--out", "out"],
         &["summary", "out"],
+        &["export", "out", "--to", "csv"],
         &["check", "nothing.toml"],
     ] {
         let (_, document) = bench.json(arguments);

@@ -56,7 +56,7 @@ pub(crate) fn modes_path(case: &Path) -> PathBuf {
 
 /// A name as one component of a path: what a file system or Zarr could take for more than a name
 /// is written as `%` and two hexadecimal digits, as in a URL.
-pub(crate) fn component(name: &str) -> String {
+pub fn component(name: &str) -> String {
     let mut encoded = String::with_capacity(name.len());
     for (index, character) in name.chars().enumerate() {
         let hostile = character.is_control()

@@ -18,6 +18,7 @@ mod outcome;
 mod overview;
 mod path;
 mod recorder;
+mod rows;
 mod sample;
 mod scene;
 mod series;
@@ -36,7 +37,7 @@ pub use description::{
 };
 pub use envelope::Envelope;
 pub use error::StoreError;
-pub use layout::{STORE_FORMAT, STORE_NAME};
+pub use layout::{STORE_FORMAT, STORE_NAME, component as path_component};
 pub use modes::{CaseModes, ModeReport, ModeShapes, ModesReport, MotionShare};
 pub use outcome::{CaseOutcome, DynamicsFacts, StaticsFacts, mean_order};
 pub use overview::{
@@ -44,6 +45,7 @@ pub use overview::{
 };
 pub use path::{CasePath, PathChannel, PathPointFacts, StudyPaths};
 pub use recorder::CaseRecorder;
+pub use rows::StoredRows;
 pub use sample::Sample;
 pub use scene::{
     Scene, SceneAttachment, SceneBody, SceneCurrent, SceneEnd, SceneLine, SceneSection, SceneVessel,

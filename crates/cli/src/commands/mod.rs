@@ -1,6 +1,7 @@
 //! One file per command.
 
 mod check;
+mod export;
 mod modes;
 mod path;
 mod run;
@@ -10,6 +11,7 @@ mod verify;
 mod view;
 
 pub(crate) use check::{CheckReport, check};
+pub(crate) use export::export;
 pub(crate) use modes::{CaseModesReport, ModesDocument, modes};
 pub(crate) use path::path;
 pub(crate) use run::run;

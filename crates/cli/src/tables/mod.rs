@@ -2,6 +2,7 @@
 
 mod check;
 mod discretisation;
+mod export;
 mod grid;
 mod modes;
 mod number;
@@ -12,6 +13,7 @@ mod summary;
 mod verification;
 
 pub(crate) use check::check_text;
+pub(crate) use export::export_text;
 pub(crate) use modes::modes_text;
 pub(crate) use path::path_text;
 pub(crate) use statics::statics_text;

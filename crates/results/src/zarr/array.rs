@@ -206,6 +206,16 @@ impl Array {
         self.read_every(index, 0, 1)
     }
 
+    /// Reads a chunk that must be there.
+    pub(crate) fn read_written_chunk(&self, index: usize) -> Result<Vec<f64>, StoreError> {
+        let path = self.chunk_path(index);
+        if path.is_file() {
+            self.read_chunk(index)
+        } else {
+            Err(damaged(&path, "the file is missing"))
+        }
+    }
+
     /// Every `step`-th value of a chunk, from the one at `first` on.
     fn read_every(&self, index: usize, first: usize, step: usize) -> Result<Vec<f64>, StoreError> {
         let len = self.shape.chunk_rows * self.shape.row_len();
