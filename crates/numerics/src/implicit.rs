@@ -1,5 +1,6 @@
 //! The seam between solvers and systems: what a solver needs to know, and nothing of physics.
 
+use crate::explicit::ExplicitSystem;
 use crate::{Configuration, Matrix3, Vector6};
 
 /// Configuration with its velocity and acceleration, all global.
@@ -88,4 +89,9 @@ pub trait ImplicitSystem {
 
     /// How far an increment moves any point, at most [m]: the size of an error of the configuration.
     fn increment_size(&self, increment: &[Vector6]) -> f64;
+
+    /// What an explicit integrator needs, where the system has it.
+    fn explicit(&mut self) -> Option<&mut dyn ExplicitSystem> {
+        None
+    }
 }

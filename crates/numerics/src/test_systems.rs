@@ -1,8 +1,8 @@
 //! Systems with known motions, for the tests of the integrators.
 
 use crate::{
-    Configuration, ImplicitSystem, Integrator, Matrix3, MotionState, NewtonSettings, ResidualSize,
-    StepSettings, TangentWeights, Vector3, Vector6, so3,
+    Configuration, ExplicitSystem, ImplicitSystem, Integrator, Matrix3, MotionState,
+    NewtonSettings, ResidualSize, StepSettings, TangentWeights, Vector3, Vector6, so3,
 };
 
 /// Mass of a tumbler [kg].
@@ -196,12 +196,110 @@ impl ImplicitSystem for Tumbler {
     fn increment_size(&self, increment: &[Vector6]) -> f64 {
         increment[0].norm()
     }
+
+    fn explicit(&mut self) -> Option<&mut dyn ExplicitSystem> {
+        Some(self)
+    }
+}
+
+impl ExplicitSystem for Tumbler {
+    fn accelerate(&mut self, _time: f64, state: &mut MotionState) -> Result<(), usize> {
+        state.acceleration[0] = self.acceleration(state);
+        Ok(())
+    }
+
+    fn stable_step(&mut self, _time: f64, _state: &MotionState) -> f64 {
+        1.0
+    }
+}
+
+/// A point on a spring of the angular frequency 1, with this share of the critical damping.
+pub(crate) struct Oscillator {
+    pub damping: f64,
+}
+
+impl Oscillator {
+    /// One metre away, at rest.
+    pub(crate) fn start(&self) -> MotionState {
+        let mut state = MotionState::at_rest(Configuration {
+            position: vec![Vector3::x()],
+            rotation: vec![Matrix3::identity()],
+            second: vec![Vector3::zeros()],
+        });
+        state.acceleration[0][0] = -1.0;
+        state
+    }
+
+    /// Where it is after `time`, with less than the critical damping [m].
+    pub(crate) fn exact(&self, time: f64) -> f64 {
+        let xi = self.damping;
+        let fast = (1.0 - xi * xi).sqrt();
+        (-xi * time).exp() * ((fast * time).cos() + xi / fast * (fast * time).sin())
+    }
+}
+
+impl ImplicitSystem for Oscillator {
+    fn frame_count(&self) -> usize {
+        1
+    }
+
+    fn begin(&mut self) {}
+
+    fn assemble(
+        &mut self,
+        _time: f64,
+        state: &MotionState,
+        _weights: Option<&TangentWeights<'_>>,
+        residual: &mut [Vector6],
+    ) {
+        let position = state.configuration.position[0];
+        let force = state.velocity[0] * (2.0 * self.damping) + state.acceleration[0];
+        residual[0] = force;
+        for row in 0..3 {
+            residual[0][row] += position[row];
+        }
+    }
+
+    fn solve(&mut self, _residual: &[Vector6], _increment: &mut [Vector6]) -> Result<(), usize> {
+        Err(0)
+    }
+
+    fn residual_size(&self, residual: &[Vector6]) -> ResidualSize {
+        ResidualSize {
+            newtons: residual[0].norm(),
+            frame: 0,
+        }
+    }
+
+    fn increment_size(&self, increment: &[Vector6]) -> f64 {
+        increment[0].norm()
+    }
+
+    fn explicit(&mut self) -> Option<&mut dyn ExplicitSystem> {
+        Some(self)
+    }
+}
+
+impl ExplicitSystem for Oscillator {
+    fn accelerate(&mut self, time: f64, state: &mut MotionState) -> Result<(), usize> {
+        state.acceleration[0] = Vector6::zeros();
+        let mut residual = [Vector6::zeros()];
+        self.assemble(time, state, None, &mut residual);
+        state.acceleration[0] = -residual[0];
+        Ok(())
+    }
+
+    fn stable_step(&mut self, _time: f64, _state: &MotionState) -> f64 {
+        crate::stability_limit(self.damping)
+    }
 }
 
 /// Two masses on a spring that stiffens, each free otherwise: as one pair of points, or as two
 /// frames that do not turn.
 pub(crate) struct Dumbbell {
     pub as_pair: bool,
+    /// Whether it shows its explicit side.
+    pub explicit: bool,
     matrix: nalgebra::Matrix6<f64>,
 }
 
@@ -209,6 +307,7 @@ impl Dumbbell {
     pub(crate) fn new(as_pair: bool) -> Dumbbell {
         Dumbbell {
             as_pair,
+            explicit: true,
             matrix: nalgebra::Matrix6::zeros(),
         }
     }
@@ -227,8 +326,7 @@ impl Dumbbell {
         };
         let mut state = MotionState::at_rest(configuration);
         state.velocity = self.laid_out(&velocities);
-        let forces = self.forces(&self.points(&state));
-        state.acceleration = self.laid_out(&[-forces[0] / MASS, -forces[1] / MASS]);
+        state.acceleration = self.acceleration(&state);
         state
     }
 
@@ -248,6 +346,11 @@ impl Dumbbell {
             true => vec![six(&values[0], &values[1])],
             false => vec![six(&values[0], &zero), six(&values[1], &zero)],
         }
+    }
+
+    fn acceleration(&self, state: &MotionState) -> Vec<Vector6> {
+        let forces = self.forces(&self.points(state));
+        self.laid_out(&forces.map(|force| -force / MASS))
     }
 
     /// Forces that hold the spring back.
@@ -309,6 +412,21 @@ impl ImplicitSystem for Dumbbell {
 
     fn increment_size(&self, increment: &[Vector6]) -> f64 {
         increment.iter().map(Vector6::norm).fold(0.0, f64::max)
+    }
+
+    fn explicit(&mut self) -> Option<&mut dyn ExplicitSystem> {
+        self.explicit.then_some(self)
+    }
+}
+
+impl ExplicitSystem for Dumbbell {
+    fn accelerate(&mut self, _time: f64, state: &mut MotionState) -> Result<(), usize> {
+        state.acceleration = self.acceleration(state);
+        Ok(())
+    }
+
+    fn stable_step(&mut self, _time: f64, _state: &MotionState) -> f64 {
+        1.0
     }
 }
 

@@ -5,3 +5,4 @@
 pub mod curve;
 pub mod dem;
 pub mod fem;
+pub mod lumped;
