@@ -27,6 +27,13 @@ impl Block6 {
         }
     }
 
+    /// A 3 x 3 part: rows and columns of the first (0) or second (1) three.
+    pub fn quadrant(&self, quadrant_row: usize, quadrant_column: usize) -> Matrix3 {
+        Matrix3::from_fn(|row, column| {
+            self.at(row + 3 * quadrant_row, column + 3 * quadrant_column)
+        })
+    }
+
     /// Adds `value` to a diagonal entry.
     #[inline]
     pub fn add_diagonal(&mut self, index: usize, value: f64) {

@@ -70,7 +70,7 @@ impl Configuration {
     }
 
     /// [`Self::difference`] of one block.
-    pub(crate) fn difference_at(&self, base: &Configuration, k: usize) -> Vector6 {
+    pub fn difference_at(&self, base: &Configuration, k: usize) -> Vector6 {
         let dx = self.position[k] - base.position[k];
         let rest = if k < self.pair_count() {
             self.second[k] - base.second[k]

@@ -38,6 +38,17 @@ pub fn smooth_step(s: f64) -> [f64; 3] {
     ]
 }
 
+/// Second derivative of [`smooth_step`].
+///
+/// Source: docs/theory/motions.md, eq. (1), differentiated twice.
+pub fn smooth_step_curve(s: f64) -> f64 {
+    if (0.0..=1.0).contains(&s) {
+        60.0 * s * (1.0 - s) * (1.0 - 2.0 * s)
+    } else {
+        0.0
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -60,6 +71,8 @@ mod tests {
             let (plus, minus) = (smooth_step(s + h), smooth_step(s - h));
             assert!((slope - (plus[0] - minus[0]) / (2.0 * h)).abs() < 1e-8);
             assert!((value - (plus[2] - minus[2]) / (2.0 * h)).abs() < 1e-8);
+            let curve = (plus[1] - minus[1]) / (2.0 * h);
+            assert!((smooth_step_curve(s) - curve).abs() < 1e-7);
         }
         assert_eq!(smooth_step(1.5), [1.0, 0.0, 1.0]);
     }

@@ -150,6 +150,7 @@ pub fn follow_path(
     let scale = PathScale {
         length: system.reference_length(),
         factor: settings.range[1] - settings.range[0],
+        pairs: system.pair_count(),
     };
     let mut walker = PathWalker::new(start.solver, start.state, settings.start, scale);
     walker.allowed = system.allowed_residual(settings.tolerance);

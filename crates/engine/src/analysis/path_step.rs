@@ -7,9 +7,7 @@ use catenix_numerics::{
     Configuration, ImplicitSystem, Matrix3, MotionState, ResidualSize, TangentWeights, Vector6, so3,
 };
 
-use super::statics::{
-    LARGEST_STEP, ROTATION_LIMIT, SPIN_HOLD, largest_norm, move_frame, travelled,
-};
+use super::statics::{LARGEST_STEP, ROTATION_LIMIT, SPIN_HOLD, move_frame, travelled};
 use crate::system::SystemSolver;
 
 /// Lengths in which the path is measured.
@@ -19,6 +17,8 @@ pub(super) struct PathScale {
     pub length: f64,
     /// Factor that counts as 1 [-].
     pub factor: f64,
+    /// Number of frames that are pairs of points.
+    pub pairs: usize,
 }
 
 impl PathScale {
@@ -28,9 +28,13 @@ impl PathScale {
         let sum: f64 = a
             .iter()
             .zip(b)
-            .map(|(a, b)| {
+            .enumerate()
+            .map(|(k, (a, b))| {
                 let moved = a.fixed_rows::<3>(0).dot(&b.fixed_rows::<3>(0));
-                moved / square + a.fixed_rows::<3>(3).dot(&b.fixed_rows::<3>(3))
+                let rest = a.fixed_rows::<3>(3).dot(&b.fixed_rows::<3>(3));
+                // The second point of a pair moves, too.
+                let unit = if k < self.pairs { square } else { 1.0 };
+                moved / square + rest / unit
             })
             .sum();
         sum / a.len() as f64
@@ -198,8 +202,12 @@ impl<'a> PathWalker<'a> {
                 let share = (factor - self.start_factor) / (self.factor - self.start_factor);
                 for k in 0..self.travel.len() {
                     let way = travelled(k, &self.start, &self.state) * share;
-                    self.state.configuration.position[k] = self.start.position[k];
-                    self.state.configuration.rotation[k] = self.start.rotation[k];
+                    let configuration = &mut self.state.configuration;
+                    configuration.position[k] = self.start.position[k];
+                    configuration.rotation[k] = self.start.rotation[k];
+                    if let Some(second) = self.start.second.get(k) {
+                        configuration.second[k] = *second;
+                    }
                     move_frame(self.solver.system(), k, &way, &mut self.state);
                 }
                 self.factor = *factor;
@@ -239,7 +247,8 @@ impl<'a> PathWalker<'a> {
             Closure::Factor(factor) => factor - self.factor,
             Closure::Distance(tangent, distance) => {
                 // The travel follows an increment by the inverse Jacobian of its rotation.
-                for (weight, travel) in self.weights.iter_mut().zip(&self.travel) {
+                let turns = self.weights.iter_mut().zip(&self.travel);
+                for (weight, travel) in turns.skip(self.scale.pairs) {
                     *weight = so3::left_jacobian_inverse(&travel.fixed_rows::<3>(3).into_owned());
                 }
                 let along = |motion: &[Vector6]| -> f64 {
@@ -265,7 +274,7 @@ impl<'a> PathWalker<'a> {
         for (d, by_factor) in self.by_residual.iter_mut().zip(&self.by_factor) {
             *d += by_factor * change;
         }
-        let turn = largest_norm(&self.by_residual, 3);
+        let turn = self.solver.system().largest_turn(&self.by_residual);
         if !turn.is_finite() || turn > ROTATION_LIMIT {
             return false;
         }

@@ -15,7 +15,6 @@ use catenix_numerics::{
 use thiserror::Error;
 
 use super::free_motion;
-use crate::element::dem::pair::six;
 use crate::system::{FrameOwner, StepView, System, SystemSolver};
 
 /// Newton iterations of one pseudo-step before it is cut.
@@ -346,8 +345,11 @@ impl<'s, 'a> Search<'s, 'a> {
         for iteration in 0..=STEP_ITERATIONS {
             for k in 0..self.travel.len() {
                 self.state.acceleration[k] = self.travel[k] * mass;
-                self.weights[k] =
-                    so3::left_jacobian_inverse(&self.travel[k].fixed_rows::<3>(3).into_owned());
+                // Points do not turn: at pairs the weights stay the identity.
+                if k >= self.start.pair_count() {
+                    let turn = self.travel[k].fixed_rows::<3>(3).into_owned();
+                    self.weights[k] = so3::left_jacobian_inverse(&turn);
+                }
             }
             let weights = TangentWeights {
                 velocity: 0.0,
@@ -371,7 +373,8 @@ impl<'s, 'a> Search<'s, 'a> {
             if iteration == STEP_ITERATIONS {
                 return Ok(StepEnd::OutOfIterations { start_residual });
             }
-            let moment = SPIN_MOMENT * largest_norm(&self.residual_vector, 3);
+            let moment = self.solver.system().largest_moment(&self.residual_vector);
+            let moment = SPIN_MOMENT * moment;
             self.solver.hold_spins(&self.state, SPIN_HOLD, moment);
             if self
                 .solver
@@ -403,13 +406,13 @@ impl<'s, 'a> Search<'s, 'a> {
     /// Applies the increment, shortened where it turns too far; returns the largest move
     /// and whether it was applied in full.
     fn advance(&mut self) -> (f64, bool) {
-        let turn = largest_norm(&self.increment, 3);
+        let turn = self.solver.system().largest_turn(&self.increment);
         let shorten = if turn > ROTATION_LIMIT {
             ROTATION_LIMIT / turn
         } else {
             1.0
         };
-        let moved = largest_norm(&self.increment, 0) * shorten;
+        let moved = self.solver.system().largest_translation(&self.increment) * shorten;
         for increment in &mut self.increment {
             *increment *= shorten;
         }
@@ -427,6 +430,10 @@ impl<'s, 'a> Search<'s, 'a> {
 pub(super) fn move_frame(system: &System, k: usize, d: &Vector6, state: &mut MotionState) {
     let turn: Vector3 = d.fixed_rows::<3>(3).into();
     state.configuration.position[k] += d.fixed_rows::<3>(0);
+    if let Some(second) = state.configuration.second.get_mut(k) {
+        *second += d.fixed_rows::<3>(3);
+        return;
+    }
     let rotation = &mut state.configuration.rotation[k];
     let axis = *rotation * system.frame_axis(k);
     let spin = axis * axis.dot(&turn);
@@ -435,15 +442,5 @@ pub(super) fn move_frame(system: &System, k: usize, d: &Vector6, state: &mut Mot
 
 /// Translation and rotation vector of a frame from `start`.
 pub(super) fn travelled(k: usize, start: &Configuration, state: &MotionState) -> Vector6 {
-    let configuration = &state.configuration;
-    let way = so3::log(&(configuration.rotation[k] * start.rotation[k].transpose()));
-    six(&(configuration.position[k] - start.position[k]), &way)
-}
-
-/// Largest norm of the translations (`part` 0) or rotations (`part` 3).
-pub(super) fn largest_norm(vectors: &[Vector6], part: usize) -> f64 {
-    vectors
-        .iter()
-        .map(|d| d.fixed_rows::<3>(part).norm())
-        .fold(0.0, f64::max)
+    state.configuration.difference_at(start, k)
 }

@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 
 use catenix_model::{Motion, TowLeg, Vessel};
-use catenix_numerics::time_table::smooth_step;
+use catenix_numerics::time_table::{smooth_step, smooth_step_curve};
 use catenix_numerics::{Matrix3, Vector3, so3, spline::Spline};
 
 /// State of a prescribed body.
@@ -19,6 +19,10 @@ pub struct RigidMotion {
     pub velocity: Vector3,
     /// Angular velocity, global (3) [rad/s].
     pub spin: Vector3,
+    /// Acceleration of the origin, global (3) [m/s2].
+    pub acceleration: Vector3,
+    /// Angular acceleration, global (3) [rad/s2].
+    pub angular_acceleration: Vector3,
 }
 
 impl RigidMotion {
@@ -27,6 +31,8 @@ impl RigidMotion {
         RigidMotion {
             velocity: Vector3::zeros(),
             spin: Vector3::zeros(),
+            acceleration: Vector3::zeros(),
+            angular_acceleration: Vector3::zeros(),
             ..self
         }
     }
@@ -93,20 +99,22 @@ impl PrescribedMotion {
         self.position
     }
 
-    /// The six displacements and their rates at a time.
-    fn displacement(&self, time: f64) -> ([f64; 6], [f64; 6]) {
+    /// The six displacements, their rates and the rates of these at a time.
+    fn displacement(&self, time: f64) -> [[f64; 6]; 3] {
         let mut value = [0.0; 6];
         let mut rate = [0.0; 6];
+        let mut curve = [0.0; 6];
         for part in &self.parts {
             match part {
                 Part::Tow(legs) => {
                     let mut before = [0.0; 2];
                     for leg in legs {
-                        let [step, _, integral] = smooth_step((time - leg.start) / leg.ramp);
+                        let [step, slope, integral] = smooth_step((time - leg.start) / leg.ramp);
                         for k in 0..2 {
                             let change = leg.velocity[k] - before[k];
                             value[k] += change * leg.ramp * integral;
                             rate[k] += change * step;
+                            curve[k] += change * slope / leg.ramp;
                         }
                         before = leg.velocity;
                     }
@@ -118,45 +126,59 @@ impl PrescribedMotion {
                     phase,
                     ramp,
                 } => {
-                    let [step, slope] = if *ramp > 0.0 {
+                    let [step, slope, bend] = if *ramp > 0.0 {
                         let [step, slope, _] = smooth_step(time / ramp);
-                        [step, slope / ramp]
+                        [
+                            step,
+                            slope / ramp,
+                            smooth_step_curve(time / ramp) / (ramp * ramp),
+                        ]
                     } else {
-                        [1.0, 0.0]
+                        [1.0, 0.0, 0.0]
                     };
                     let frequency = TAU / period;
                     let (sin, cos) = (frequency * time + phase).sin_cos();
                     value[*degree] += amplitude * step * sin;
                     rate[*degree] += amplitude * (slope * sin + step * frequency * cos);
+                    let grown = bend - step * frequency * frequency;
+                    curve[*degree] += amplitude * (grown * sin + 2.0 * slope * frequency * cos);
                 }
                 Part::History(splines) => {
                     for (k, spline) in splines.iter().enumerate() {
                         if let Some(spline) = spline {
-                            let [v, first, _] = spline.at(time);
+                            let [v, first, second] = spline.at(time);
                             value[k] += v;
                             rate[k] += first;
+                            curve[k] += second;
                         }
                     }
                 }
             }
         }
-        (value, rate)
+        [value, rate, curve]
     }
 
     /// Motion at a time; before t = 0 as at t = 0.
     pub fn at(&self, time: f64) -> RigidMotion {
-        let (value, rate) = self.displacement(time.max(0.0));
+        let [value, rate, curve] = self.displacement(time.max(0.0));
         let [surge, sway, heave, roll, pitch, yaw] = value;
         let turn_z = so3::exp(&(Vector3::z() * (yaw + self.heading)));
         let turn_y = turn_z * so3::exp(&(Vector3::y() * pitch));
         let rotation = turn_y * so3::exp(&(Vector3::x() * roll));
+        let [x, y, z] = [turn_y * Vector3::x(), turn_z * Vector3::y(), Vector3::z()];
+        let [spin_y, spin_z] = [y * rate[4], z * rate[5]];
         RigidMotion {
             position: self.position + Vector3::new(surge, sway, heave),
             rotation,
             velocity: Vector3::new(rate[0], rate[1], rate[2]),
-            spin: Vector3::z() * rate[5]
-                + turn_z * Vector3::y() * rate[4]
-                + turn_y * Vector3::x() * rate[3],
+            spin: spin_z + spin_y + x * rate[3],
+            acceleration: Vector3::new(curve[0], curve[1], curve[2]),
+            // Each axis turns with the rotations before it.
+            angular_acceleration: z * curve[5]
+                + y * curve[4]
+                + x * curve[3]
+                + spin_z.cross(&spin_y)
+                + (spin_z + spin_y).cross(&(x * rate[3])),
         }
     }
 }
@@ -216,6 +238,10 @@ mod tests {
             assert!((mid.velocity - velocity).norm() < 1e-7);
             let spin = so3::log(&(plus.rotation * minus.rotation.transpose())) / (2.0 * h);
             assert!((mid.spin - spin).norm() < 1e-7);
+            let acceleration = (plus.velocity - minus.velocity) / (2.0 * h);
+            assert!((mid.acceleration - acceleration).norm() < 1e-7);
+            let angular = (plus.spin - minus.spin) / (2.0 * h);
+            assert!((mid.angular_acceleration - angular).norm() < 1e-7);
         }
     }
 

@@ -15,6 +15,7 @@
 //! shared. Force kernels are not: otherwise the agreement of two formulations would prove nothing.
 
 pub(crate) mod dem;
+pub(crate) mod lumped;
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -31,9 +32,9 @@ use crate::system::{
 
 /// Number of frames that a line takes.
 pub(crate) fn frame_count(model: &Model, line: &Line, layout: &LineLayout) -> usize {
-    let _ = line;
     match model.formulation {
         FormulationKind::Dem => dem::frame_count(layout),
+        FormulationKind::Lumped => lumped::frame_count(model, line, layout),
         _ => 0,
     }
 }
@@ -45,6 +46,7 @@ pub(crate) fn frame_count(model: &Model, line: &Line, layout: &LineLayout) -> us
 pub(crate) fn build(plan: &Plan<'_>) -> Result<Lines, SystemError> {
     match plan.model.formulation {
         FormulationKind::Dem => dem::build(plan),
+        FormulationKind::Lumped => lumped::build(plan),
         kind => Err(SystemError::Unusable {
             owner: "formulation".into(),
             what: kind.word().into(),
@@ -73,12 +75,14 @@ pub(crate) struct Lines {
     pub formulation: Arc<dyn Formulation>,
 }
 
-/// A point on a frame, with the share of a thing that it takes.
+/// A point on a frame or of a pair, with the share of a thing that it takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Spot {
-    /// The frame.
+    /// The frame or pair of points.
     pub frame: usize,
-    /// From the frame's origin, in its own axes (3) [m].
+    /// Which point of a pair; 0 at frames.
+    pub half: usize,
+    /// From the frame's origin, in its own axes (3) [m]; zero at points.
     pub arm: Vector3,
     /// Share, 0 to 1; the shares of one thing add up to 1 [-].
     pub share: f64,
@@ -100,6 +104,24 @@ pub(crate) trait Formulation: Debug + Send + Sync {
 
     /// Largest product of a spring's stiffness and the softness of a frame that it acts on.
     fn stiffest_over(&self, frames: &[Frame], softness: &dyn Fn(&Frame) -> f64) -> f64;
+
+    /// Largest angle by which the parts of lines turn that are no frames, whose own turns callers
+    /// see, at an increment (frame_count) [rad].
+    fn largest_turn(&self, increment: &[Vector6]) -> f64 {
+        let _ = increment;
+        0.0
+    }
+
+    /// Whether no two frames share mass, so that an explicit integrator can do without a system of
+    /// equations; then [`Evaluation::stable_step`] has a value.
+    fn has_mass_of_blocks(&self) -> bool {
+        false
+    }
+
+    /// Direction of the line at one of its frames, unit, global (3).
+    fn axis(&self, state: &MotionState, frame: usize) -> Vector3 {
+        state.configuration.rotation[frame].column(0).into()
+    }
 }
 
 /// A state of the system with its surroundings.
@@ -124,6 +146,8 @@ impl Situation<'_> {
                 rotation: self.state.configuration.rotation[k],
                 velocity: self.state.velocity[k].fixed_rows::<3>(0).into_owned(),
                 spin: self.state.velocity[k].fixed_rows::<3>(3).into_owned(),
+                acceleration: self.state.acceleration[k].fixed_rows::<3>(0).into_owned(),
+                angular_acceleration: self.state.acceleration[k].fixed_rows::<3>(3).into_owned(),
             },
             Carrier::Vessel(k) => self.vessels[k],
         }
@@ -200,4 +224,10 @@ pub(crate) trait Evaluation: Debug + Send {
     /// Small motion of the nodes of a line for the small motion `x` of the frames (frame_count):
     /// translations and rotations, (n_elements + 1).
     fn motion_at_nodes(&self, at: &Situation<'_>, x: &[Vector6], line: usize) -> Vec<Vector6>;
+
+    /// A step that an explicit integrator can take [s]; `None` where there is none.
+    fn stable_step(&self, at: &Situation<'_>) -> Option<f64> {
+        let _ = at;
+        None
+    }
 }

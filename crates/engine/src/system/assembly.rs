@@ -29,8 +29,13 @@ pub(super) fn assemble(
         let k = lump.frame;
         let own = weights.map(|weights| FrameWeights::of(weights, k));
         let tangent = own.as_ref().map(|own| (&mut matrix.diagonal[k], own));
-        let motion = frame_motion(at.state, k);
-        frames::add_lump(lump, &motion, &at.sea, &mut residual[k], tangent);
+        let motion = frames::lump_carrier(at.state, lump);
+        let add = if k < system.pair_count() {
+            frames::add_point_lump
+        } else {
+            frames::add_lump
+        };
+        add(lump, &motion, &at.sea, &mut residual[k], tangent);
     }
     let loaded = weights.is_some().then_some(&mut *matrix);
     loads::add_loads(system, load_factors, at.state, residual, loaded);

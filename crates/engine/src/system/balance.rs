@@ -2,7 +2,7 @@
 
 use catenix_numerics::{Matrix3, Vector3};
 
-use super::frames::{FrameMotion, frame_motion};
+use super::frames::{FrameMotion, frame_motion, lump_carrier};
 use super::{EnergyTerms, Frame, StepView};
 
 /// Momentum of the structure: elements, bodies and the masses of lumps, without added mass.
@@ -45,7 +45,7 @@ impl StepView<'_> {
             momentum.add_frame(&system.frames[k], &frame_motion(self.state, k));
         }
         for lump in &system.lumps {
-            let m = frame_motion(self.state, lump.frame);
+            let m = lump_carrier(self.state, lump);
             let arm = m.rotation * lump.arm;
             let own = (m.velocity + m.spin.cross(&arm)) * lump.lump.mass;
             momentum.add_point(&(m.position + arm), &own);

@@ -56,7 +56,8 @@ pub(super) fn build(model: &Model) -> Result<System, SystemError> {
     let loads = loads::place(&model.loads, &layouts, &*formulation, &shape, line_frames);
     let reference_length = model.lines.iter().map(Line::length).fold(1.0, f64::max);
     let reference_force = reference_force(model, &frames, &lumps, reference_length);
-    let furthest = shape.position.iter().map(|x| x.amax()).fold(1.0, f64::max);
+    let places = shape.position.iter().chain(&shape.second);
+    let furthest = places.map(|x| x.amax()).fold(1.0, f64::max);
     Ok(System {
         topology: Topology::new(chains, frames.len()),
         current: CurrentField::new(&model.environment.current),
@@ -159,6 +160,7 @@ fn frame_lump(model: &Model, attachment: &Attachment, spot: &Spot) -> FrameLump 
     let share = spot.share;
     FrameLump {
         frame: spot.frame,
+        half: spot.half,
         arm: spot.arm,
         lump: Lump {
             mass: share * attachment.mass,

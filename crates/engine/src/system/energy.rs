@@ -76,7 +76,7 @@ impl SystemSolver<'_> {
             ));
         }
         for lump in &self.system.lumps {
-            let motion = frame_motion(state, lump.frame);
+            let motion = frames::lump_carrier(state, lump);
             terms.add(frames::lump_energy(lump, &motion, &at.sea));
         }
         terms.loads = loads::power(self.system, &self.load_factors, state);

@@ -65,6 +65,19 @@ pub(crate) fn frame_motion(state: &MotionState, k: usize) -> FrameMotion {
     }
 }
 
+/// Motion of a point of pair `k` of a state: a frame that does not turn.
+pub(crate) fn point_motion(state: &MotionState, k: usize, half: usize) -> FrameMotion {
+    let part = |list: &[Vector6]| -> Vector3 { list[k].fixed_rows::<3>(3 * half).into() };
+    FrameMotion {
+        position: state.configuration.point(k, half),
+        rotation: Matrix3::identity(),
+        velocity: part(&state.velocity),
+        spin: Vector3::zeros(),
+        acceleration: part(&state.acceleration),
+        angular_acceleration: Vector3::zeros(),
+    }
+}
+
 /// Powers of the loads on a frame or lump [W].
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct LoadPowers {
@@ -271,6 +284,34 @@ fn lump_motion(lump: &FrameLump, m: &FrameMotion, sea: &Sea<'_>) -> (LumpMotion,
         angular_acceleration: m.angular_acceleration,
     };
     (motion, slope)
+}
+
+/// Motion of what a lump sits on.
+pub(crate) fn lump_carrier(state: &MotionState, lump: &FrameLump) -> FrameMotion {
+    if lump.frame < state.configuration.pair_count() {
+        point_motion(state, lump.frame, lump.half)
+    } else {
+        frame_motion(state, lump.frame)
+    }
+}
+
+/// Adds inertia minus loads of a lump on a point of a pair.
+pub(crate) fn add_point_lump(
+    lump: &FrameLump,
+    m: &FrameMotion,
+    sea: &Sea<'_>,
+    residual: &mut Vector6,
+    tangent: Option<(&mut Block6, &FrameWeights)>,
+) {
+    let mut own = Vector6::zeros();
+    let mut block = Block6::ZERO;
+    let wanted = tangent.as_ref().map(|(_, weights)| (&mut block, *weights));
+    add_lump(lump, m, sea, &mut own, wanted);
+    let mut rows = residual.fixed_rows_mut::<3>(3 * lump.half);
+    rows += own.fixed_rows::<3>(0);
+    if let Some((into, _)) = tangent {
+        into.add_quadrant(lump.half, lump.half, &block.quadrant(0, 0));
+    }
 }
 
 /// Adds inertia minus loads of a lump to its frame's residual and diagonal block.

@@ -7,6 +7,7 @@ use super::frames::{self, frame_motion};
 use super::solver::SystemSolver;
 use super::{Carrier, Mount};
 use crate::element::dem::pair::six;
+use crate::formulation::Situation;
 
 impl SystemSolver<'_> {
     /// Tangent stiffness at `state`, which is at rest: derivative of all forces by the increments.
@@ -33,20 +34,30 @@ impl SystemSolver<'_> {
     /// Source: docs/theory/modes.md, eq. (2).
     pub(crate) fn mass(&self, state: &MotionState, in_water: bool) -> BlockMatrix {
         let at = self.situation(0.0, state);
-        let system = self.system;
-        let mut mass = BlockMatrix::zeros(&system.topology);
-        self.lines.add_mass(&at, in_water, &mut mass);
+        let mut mass = BlockMatrix::zeros(&self.system.topology);
+        self.add_mass(&at, in_water, &mut mass);
+        mass
+    }
+
+    /// Adds the mass matrix in a situation.
+    pub(super) fn add_mass(&self, at: &Situation<'_>, in_water: bool, mass: &mut BlockMatrix) {
+        let (system, state) = (self.system, at.state);
+        self.lines.add_mass(at, in_water, mass);
         for k in system.body_frame(0)..system.frames.len() {
             let motion = frame_motion(state, k);
             let own = frames::frame_mass(&system.frames[k], &motion, &at.sea, in_water);
             mass.diagonal[k] = mass.diagonal[k].plus(1.0, &own);
         }
         for lump in &system.lumps {
-            let motion = frame_motion(state, lump.frame);
+            let motion = frames::lump_carrier(state, lump);
             let own = frames::lump_mass(lump, &motion, &at.sea, in_water);
-            mass.diagonal[lump.frame] = mass.diagonal[lump.frame].plus(1.0, &own);
+            let block = &mut mass.diagonal[lump.frame];
+            if lump.frame < system.pair_count() {
+                block.add_quadrant(lump.half, lump.half, &own.quadrant(0, 0));
+            } else {
+                *block = block.plus(1.0, &own);
+            }
         }
-        mass
     }
 
     /// v^T C v with the structural damping C about `state`: the power that it takes from the

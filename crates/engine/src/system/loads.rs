@@ -5,16 +5,30 @@ use catenix_numerics::{BlockMatrix, Configuration, Matrix3, MotionState, Vector3
 
 use super::{LineLayout, System};
 use crate::element::dem::pair::six;
-use crate::formulation::Formulation;
+use crate::formulation::{Formulation, Spot};
 use crate::load::point::FramePoint;
 
 /// A load, or its share, on one frame.
 #[derive(Debug, Clone)]
 pub(crate) struct FrameLoad {
     pub frame: usize,
+    /// Which point, where the frame is a pair of points.
+    pub half: usize,
     /// Index into the model's loads.
     pub load: usize,
     pub point: FramePoint,
+}
+
+impl FrameLoad {
+    /// Force and moment on the frame, or forces on the two points of a pair, at the full value.
+    fn value(&self, system: &System, state: &MotionState) -> Vector6 {
+        let value = self.point.at(&state.configuration.rotation[self.frame]);
+        match (self.frame < system.pair_count(), self.half) {
+            (false, _) => six(&value.force, &value.moment),
+            (true, 0) => six(&value.force, &Vector3::zeros()),
+            (true, _) => six(&Vector3::zeros(), &value.force),
+        }
+    }
 }
 
 /// Puts the loads of a model on its frames, in their first shape.
@@ -28,19 +42,20 @@ pub(super) fn place(
     let mut placed = Vec::new();
     for (index, load) in loads.iter().enumerate() {
         let (force, moment) = (Vector3::from(load.force), Vector3::from(load.moment));
-        let mut add = |frame: usize, arm: Vector3, to_frame: Matrix3, share: f64| {
+        let mut add = |spot: Spot, to_frame: Matrix3| {
             let turn = if load.follows {
                 to_frame
             } else {
                 Matrix3::identity()
             };
             placed.push(FrameLoad {
-                frame,
+                frame: spot.frame,
+                half: spot.half,
                 load: index,
                 point: FramePoint {
-                    arm,
-                    force: turn * force * share,
-                    moment: turn * moment * share,
+                    arm: spot.arm,
+                    force: turn * force * spot.share,
+                    moment: turn * moment * spot.share,
                     follows: load.follows,
                 },
             });
@@ -51,12 +66,17 @@ pub(super) fn place(
                 for spot in formulation.spots(layout, arc_length) {
                     let rotation = &shape.rotation[spot.frame];
                     let to_frame = rotation.transpose() * local_axes(&rotation.column(0).into());
-                    add(spot.frame, spot.arm, to_frame, spot.share);
+                    add(spot, to_frame);
                 }
             }
             LoadPlace::Body { body, point_local } => {
-                let arm = Vector3::from(point_local);
-                add(first_body + body, arm, Matrix3::identity(), 1.0);
+                let spot = Spot {
+                    frame: first_body + body,
+                    half: 0,
+                    arm: Vector3::from(point_local),
+                    share: 1.0,
+                };
+                add(spot, Matrix3::identity());
             }
         }
     }
@@ -88,9 +108,12 @@ pub(super) fn add_loads(
         if factor == 0.0 {
             continue;
         }
+        residual[load.frame] -= load.value(system, state) * factor;
+        if load.frame < system.pair_count() {
+            // On a point a force is constant.
+            continue;
+        }
         let rotation = &state.configuration.rotation[load.frame];
-        let value = load.point.at(rotation);
-        residual[load.frame] -= six(&value.force, &value.moment) * factor;
         if let Some(matrix) = matrix.as_deref_mut() {
             let tangent = load.point.tangent(rotation);
             let block = &mut matrix.diagonal[load.frame];
@@ -112,17 +135,15 @@ pub(super) fn add_direction(
         .iter()
         .filter(|load| chosen.contains(&load.load))
     {
-        let value = load.point.at(&state.configuration.rotation[load.frame]);
-        out[load.frame] += six(&value.force, &value.moment);
+        out[load.frame] += load.value(system, state);
     }
 }
 
 /// Power of the loads [W].
 pub(super) fn power(system: &System, factors: &[f64], state: &MotionState) -> f64 {
     let powers = system.loads.iter().map(|load| {
-        let value = load.point.at(&state.configuration.rotation[load.frame]);
         let velocity = &state.velocity[load.frame];
-        six(&value.force, &value.moment).dot(velocity) * factors[load.load]
+        load.value(system, state).dot(velocity) * factors[load.load]
     });
     powers.sum()
 }

@@ -21,7 +21,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use catenix_model::{ChannelTarget, LineType, Model, NaturalShape};
-use catenix_numerics::{Configuration, Matrix3, Topology, Vector3};
+use catenix_numerics::{Configuration, Matrix3, Topology, Vector3, Vector6};
 use thiserror::Error;
 
 use crate::body::lump::Lump;
@@ -112,6 +112,8 @@ pub(crate) struct Frame {
 #[derive(Debug, Clone)]
 pub(crate) struct FrameLump {
     pub frame: usize,
+    /// Which point, where the frame is a pair of points.
+    pub half: usize,
     /// From the frame's origin, own axes [m].
     pub arm: Vector3,
     pub lump: Lump,
@@ -175,6 +177,11 @@ impl LineLayout {
     pub fn length(&self, element: usize) -> f64 {
         self.arc_length[element + 1] - self.arc_length[element]
     }
+}
+
+/// The larger of two numbers; one that is none does not hide.
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
 }
 
 /// A time at which loads are not smooth.
@@ -320,6 +327,33 @@ impl System {
         let net =
             own.weight - own.buoyancy + lumps.map(|lump| lump.weight - lump.buoyancy).sum::<f64>();
         net.abs() <= 1e-6 * own.weight
+    }
+
+    /// Number of frames that are pairs of points; they come first.
+    pub(crate) fn pair_count(&self) -> usize {
+        self.first_shape.pair_count()
+    }
+
+    /// Largest angle by which anything turns at an increment (frame_count) [rad].
+    pub(crate) fn largest_turn(&self, increment: &[Vector6]) -> f64 {
+        let turns = increment[self.pair_count()..].iter();
+        let turns = turns.map(|d| d.fixed_rows::<3>(3).norm());
+        turns.fold(self.formulation.largest_turn(increment), larger)
+    }
+
+    /// Largest translation of anything at an increment (frame_count) [m].
+    pub(crate) fn largest_translation(&self, increment: &[Vector6]) -> f64 {
+        let pairs = increment[..self.pair_count()].iter();
+        let second = pairs.map(|d| d.fixed_rows::<3>(3).norm());
+        let first = increment.iter().map(|d| d.fixed_rows::<3>(0).norm());
+        first.chain(second).fold(0.0, larger)
+    }
+
+    /// Largest moment of a residual on a frame (frame_count) [N m].
+    pub(crate) fn largest_moment(&self, residual: &[Vector6]) -> f64 {
+        let moments = residual[self.pair_count()..].iter();
+        let moments = moments.map(|d| d.fixed_rows::<3>(3).norm());
+        moments.fold(0.0, larger)
     }
 
     /// Frame of a body.

@@ -1,8 +1,8 @@
 //! The system as the numerics see it: residual, matrix, increment.
 
 use catenix_numerics::{
-    BlockMatrix, Factorisation, ImplicitSystem, Matrix3, MotionState, ResidualSize, TangentWeights,
-    Vector3, Vector6,
+    Block6, BlockLu, BlockMatrix, ExplicitSystem, Factorisation, ImplicitSystem, Matrix3,
+    MotionState, ResidualSize, TangentWeights, Vector3, Vector6,
 };
 
 use super::System;
@@ -38,6 +38,14 @@ pub struct SystemSolver<'a> {
     pub(super) matrix: BlockMatrix,
     factors: Factorisation,
     factorisations: usize,
+    explicit_room: Option<Box<ExplicitRoom>>,
+}
+
+/// Room for explicit integration.
+#[derive(Debug, Clone)]
+struct ExplicitRoom {
+    residual: Vec<Vector6>,
+    mass: BlockMatrix,
 }
 
 impl<'a> SystemSolver<'a> {
@@ -77,6 +85,7 @@ impl<'a> SystemSolver<'a> {
             matrix: BlockMatrix::zeros(&system.topology),
             factors: Factorisation::new(&system.topology),
             factorisations: 0,
+            explicit_room: None,
         }
     }
 
@@ -125,7 +134,8 @@ impl<'a> SystemSolver<'a> {
     /// per radian [N m/rad].
     pub(crate) fn hold_spins(&mut self, state: &MotionState, frequency_squared: f64, moment: f64) {
         let first_body = self.system.body_frame(0);
-        for (k, frame) in self.system.frames.iter().enumerate() {
+        let frames = self.system.frames.iter().enumerate();
+        for (k, frame) in frames.skip(self.system.pair_count()) {
             let rotation = &state.configuration.rotation[k];
             let held = if k < first_body {
                 Vector3::new(frame.inertia.x * frequency_squared + moment, 0.0, 0.0)
@@ -162,6 +172,7 @@ impl Clone for SystemSolver<'_> {
             matrix: self.matrix.clone(),
             factors: self.factors.clone(),
             factorisations: self.factorisations,
+            explicit_room: self.explicit_room.clone(),
         }
     }
 }
@@ -248,10 +259,15 @@ impl ImplicitSystem for SystemSolver<'_> {
             newtons: 0.0,
             frame: 0,
         };
+        let pairs = self.system.pair_count();
         for (frame, (r, properties)) in residual.iter().zip(&self.system.frames).enumerate() {
             let force = r.fixed_rows::<3>(0).norm();
-            let moment = r.fixed_rows::<3>(3).norm() / properties.residual_length;
-            let newtons = force.max(moment);
+            let rest = r.fixed_rows::<3>(3).norm();
+            // The second point of a pair feels a force as well.
+            let newtons = match frame < pairs {
+                true => force.max(rest),
+                false => force.max(rest / properties.residual_length),
+            };
             // A residual that is not a number must not hide behind a comparison.
             if newtons > size.newtons || !newtons.is_finite() {
                 size = ResidualSize { newtons, frame };
@@ -264,11 +280,56 @@ impl ImplicitSystem for SystemSolver<'_> {
     }
 
     fn increment_size(&self, increment: &[Vector6]) -> f64 {
-        let moves = increment.iter().zip(&self.system.frames).map(|(d, frame)| {
+        let pairs = self.system.pair_count();
+        let moves = increment.iter().zip(&self.system.frames).enumerate();
+        let moves = moves.map(|(k, (d, frame))| {
             let shift = d.fixed_rows::<3>(0).norm();
-            let turn = d.fixed_rows::<3>(3).norm() * 0.5 * frame.residual_length;
-            shift.max(turn)
+            let rest = d.fixed_rows::<3>(3).norm();
+            match k < pairs {
+                true => shift.max(rest),
+                false => shift.max(rest * 0.5 * frame.residual_length),
+            }
         });
         moves.fold(0.0, f64::max)
+    }
+
+    fn explicit(&mut self) -> Option<&mut dyn ExplicitSystem> {
+        let has = self.system.formulation.has_mass_of_blocks();
+        has.then_some(self)
+    }
+}
+
+impl ExplicitSystem for SystemSolver<'_> {
+    fn accelerate(&mut self, time: f64, state: &mut MotionState) -> Result<(), usize> {
+        let mut room = std::mem::take(&mut self.explicit_room);
+        let room_mut = room.get_or_insert_with(|| {
+            Box::new(ExplicitRoom {
+                residual: vec![Vector6::zeros(); self.system.frames.len()],
+                mass: BlockMatrix::zeros(&self.system.topology),
+            })
+        });
+        let ExplicitRoom { residual, mass } = &mut **room_mut;
+        state.acceleration.fill(Vector6::zeros());
+        self.assemble(time, state, None, residual);
+        mass.diagonal.fill(Block6::ZERO);
+        self.add_mass(&self.situation(time, state), true, mass);
+        let blocks = mass.diagonal.iter().zip(residual).enumerate();
+        let mut singular = Ok(());
+        for (k, (block, residual)) in blocks {
+            match BlockLu::factorise(block) {
+                Ok(factors) => {
+                    factors.solve(residual);
+                    state.acceleration[k] = -*residual;
+                }
+                Err(_) => singular = Err(k),
+            }
+        }
+        self.explicit_room = room;
+        singular
+    }
+
+    fn stable_step(&mut self, time: f64, state: &MotionState) -> f64 {
+        let at = self.situation(time, state);
+        self.lines.stable_step(&at).unwrap_or(0.0)
     }
 }

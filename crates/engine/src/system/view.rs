@@ -180,7 +180,12 @@ impl StepView<'_> {
                 [outer, inner],
                 wall_tension,
                 result.bend_moment,
-                result.torque,
+                // A formulation without torsion has no stress by it.
+                if result.torque.is_nan() {
+                    0.0
+                } else {
+                    result.torque
+                },
             )
         });
         [

@@ -72,8 +72,17 @@ fn align(system: &System, pencil: &Pencil<'_>, group: &mut [Eigenpair]) {
         let moved: Vec<Vector6> = vector
             .iter()
             .zip(&line_weight)
-            .map(|(u, weight)| {
-                let own = |axis: usize| DIRECTIONS.get(axis).unwrap_or(&1.0) * weight;
+            .enumerate()
+            .map(|(k, (u, weight))| {
+                let own = |axis: usize| {
+                    // The second point of a pair, like the first.
+                    let axis = if k < system.pair_count() {
+                        axis % 3
+                    } else {
+                        axis
+                    };
+                    DIRECTIONS.get(axis).unwrap_or(&1.0) * weight
+                };
                 Vector6::from_fn(|axis, _| own(axis) * u[axis])
             })
             .collect();
@@ -127,11 +136,16 @@ pub(super) struct Describer<'s, 'p> {
 impl<'s, 'p> Describer<'s, 'p> {
     pub(super) fn new(system: &'s System, state: &MotionState, pencil: &'s Pencil<'p>) -> Self {
         let inertia_along = [0, 1, 2].map(|axis| {
-            let mut along = Vector6::zeros();
-            along[axis] = 1.0;
             let n = system.frame_count();
+            let mut along = vec![Vector6::zeros(); n];
+            for (k, along) in along.iter_mut().enumerate() {
+                along[axis] = 1.0;
+                if k < system.pair_count() {
+                    along[axis + 3] = 1.0;
+                }
+            }
             let mut inertia = vec![Vector6::zeros(); n];
-            pencil.mass_times(&vec![along; n], &mut inertia);
+            pencil.mass_times(&along, &mut inertia);
             inertia
         });
         Describer {
@@ -144,11 +158,14 @@ impl<'s, 'p> Describer<'s, 'p> {
 
     /// Mass that a shaking along x, y and z moves (3) [kg].
     pub(super) fn total_mass(&self) -> [f64; 3] {
+        let pairs = self.system.pair_count();
         [0, 1, 2].map(|axis| {
-            self.inertia_along[axis]
-                .iter()
-                .map(|force| force[axis])
-                .sum()
+            let forces = self.inertia_along[axis].iter().enumerate();
+            let of = |(k, force): (usize, &Vector6)| match k < pairs {
+                true => force[axis] + force[axis + 3],
+                false => force[axis],
+            };
+            forces.map(of).sum()
         })
     }
 
@@ -161,14 +178,23 @@ impl<'s, 'p> Describer<'s, 'p> {
         let residual = self.residual(value, &vector);
         let turns = matches!(motions[0].0, Motion::Torsion | Motion::Rotation);
         let part = if turns { 3 } else { 0 };
-        let motion = |d: &Vector6| -> Vector3 { d.fixed_rows::<3>(part).into_owned() };
-        let size = vector.iter().map(|d| motion(d).norm()).fold(0.0, f64::max);
+        let pairs = self.system.pair_count();
+        let motion = |k: usize, d: &Vector6| -> Vector3 {
+            let own: Vector3 = d.fixed_rows::<3>(part).into();
+            let other: Vector3 = d.fixed_rows::<3>(3).into();
+            // Of a pair, the point that moves more; a pair does not turn.
+            match (k < pairs, turns) {
+                (true, true) => Vector3::zeros(),
+                (true, false) if other.norm() > own.norm() => other,
+                _ => own,
+            }
+        };
+        let sizes = || vector.iter().enumerate().map(|(k, d)| motion(k, d).norm());
+        let size = sizes().fold(0.0, f64::max);
         // Where many move alike, the last is named: a body, or the lower end of a line.
-        let frame = vector
-            .iter()
-            .rposition(|d| motion(d).norm() >= ALIKE * size)
-            .unwrap_or(0);
-        let largest = motion(&vector[frame]);
+        let alike = sizes().enumerate().filter(|(_, own)| *own >= ALIKE * size);
+        let frame = alike.last().map_or(0, |(k, _)| k);
+        let largest = motion(frame, &vector[frame]);
         // The largest component of the largest motion is positive.
         let sign = largest[largest.iamax()].signum();
         let scale = sign / size.max(f64::MIN_POSITIVE);
@@ -196,21 +222,30 @@ impl<'s, 'p> Describer<'s, 'p> {
         let mut forces = vec![Vector6::zeros(); x.len()];
         self.pencil.mass_times(x, &mut forces);
         for (k, (d, force)) in x.iter().zip(&forces).enumerate() {
-            let (u, turn) = (d.fixed_rows::<3>(0), d.fixed_rows::<3>(3));
-            let (f, moment) = (force.fixed_rows::<3>(0), force.fixed_rows::<3>(3));
-            let mut translate = |u: &Vector3, f: &Vector3| {
+            let part = |d: &Vector6, row: usize| -> Vector3 { d.fixed_rows::<3>(row).into() };
+            let (u, turn) = (part(d, 0), part(d, 3));
+            let (f, moment) = (part(force, 0), part(force, 3));
+            let translate = |energy: &mut [f64; 6], u: &Vector3, f: &Vector3| {
                 for (share, product) in energy.iter_mut().zip(u.component_mul(f).iter()) {
                     *share += product;
                 }
             };
             if k >= first_body {
-                translate(&u.into(), &f.into());
+                translate(&mut energy, &u, &f);
                 energy[5] += turn.dot(&moment);
                 continue;
             }
-            let axis = self.state.configuration.rotation[k] * self.system.frame_axis(k);
+            let axis = self.system.formulation.axis(&self.state, k);
+            if k < self.system.pair_count() {
+                for (u, f) in [(u, f), (turn, moment)] {
+                    let (along, force_along) = (axis.dot(&u), axis.dot(&f));
+                    translate(&mut energy, &(u - axis * along), &(f - axis * force_along));
+                    energy[3] += along * force_along;
+                }
+                continue;
+            }
             let (along, force_along) = (axis.dot(&u), axis.dot(&f));
-            translate(&(u - axis * along), &(f - axis * force_along));
+            translate(&mut energy, &(u - axis * along), &(f - axis * force_along));
             energy[3] += along * force_along;
             energy[4] += axis.dot(&turn) * axis.dot(&moment);
         }
@@ -229,11 +264,17 @@ impl<'s, 'p> Describer<'s, 'p> {
         let mut inertia = vec![Vector6::zeros(); x.len()];
         self.pencil.mass_times(x, &mut inertia);
         let residual = self.pencil.residual(value, x);
-        let frames = &self.system.frames;
+        let (frames, pairs) = (&self.system.frames, self.system.pair_count());
         let size = |forces: &[Vector6]| {
             let newtons = |k: usize| {
                 let force = forces[k].fixed_rows::<3>(0).norm();
-                force.max(forces[k].fixed_rows::<3>(3).norm() / frames[k].residual_length)
+                let rest = forces[k].fixed_rows::<3>(3).norm();
+                let length = if k < pairs {
+                    1.0
+                } else {
+                    frames[k].residual_length
+                };
+                force.max(rest / length)
             };
             (0..forces.len()).map(newtons).fold(0.0, f64::max)
         };

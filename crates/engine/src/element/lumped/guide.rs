@@ -107,6 +107,11 @@ impl GuideState {
         self.law.moment
     }
 
+    /// Angle to the support's vector, or out of the plane of a hinge [rad].
+    pub fn angle(&self) -> f64 {
+        self.law.angle
+    }
+
     /// Stored energy [J].
     pub fn energy(&self) -> f64 {
         self.law.energy

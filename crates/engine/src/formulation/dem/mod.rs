@@ -268,6 +268,7 @@ impl Formulation for Dem {
     fn spots(&self, layout: &LineLayout, arc_length: f64) -> Vec<Spot> {
         let spot = |element: usize, offset: f64, share: f64| Spot {
             frame: layout.first_frame + element,
+            half: 0,
             arm: Vector3::x() * offset,
             share,
         };
