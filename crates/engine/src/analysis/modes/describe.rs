@@ -189,11 +189,12 @@ impl<'s, 'p> Describer<'s, 'p> {
                 _ => own,
             }
         };
-        let sizes = || vector.iter().enumerate().map(|(k, d)| motion(k, d).norm());
-        let size = sizes().fold(0.0, f64::max);
+        let sizes = vector.iter().enumerate();
+        let size = sizes.map(|(k, d)| motion(k, d).norm()).fold(0.0, f64::max);
         // Where many move alike, the last is named: a body, or the lower end of a line.
-        let alike = sizes().enumerate().filter(|(_, own)| *own >= ALIKE * size);
-        let frame = alike.last().map_or(0, |(k, _)| k);
+        let frame = (0..vector.len())
+            .rfind(|&k| motion(k, &vector[k]).norm() >= ALIKE * size)
+            .unwrap_or(0);
         let largest = motion(frame, &vector[frame]);
         // The largest component of the largest motion is positive.
         let sign = largest[largest.iamax()].signum();
