@@ -6,6 +6,7 @@
 // This program talks to a person at a terminal; printing is its only output.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod bench;
 mod documentation;
 mod integrators;
 mod read_back;
@@ -22,6 +23,8 @@ usage: cargo xtask <command>
   test                  formatting, lints, documentation, read-back check and all tests
   test --only <step>    one step of the above
   test --list           the steps and what each does
+  bench [SECTION...]    cost of kernels and whole systems, and peers beside it, into bench/RESULTS.md
+  bench --quick ...     the same in short and rough, into the target folder
   integrators           cost against error of the time integrators, into docs/theory/integration.md
   tidy                  only the architecture test: crate arrows, source rules, documents
 ";
@@ -37,17 +40,22 @@ fn main() -> ExitCode {
             steps::list();
             ExitCode::SUCCESS
         }
-        ["integrators"] => match integrators::write_table(&root) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(message) => {
-                eprintln!("{message}");
-                ExitCode::FAILURE
-            }
-        },
+        ["bench", ref rest @ ..] => exit_code(bench::run(&root, rest)),
+        ["integrators"] => exit_code(integrators::write_table(&root)),
         ["tidy"] => report_tidy(&root),
         _ => {
             eprint!("{USAGE}");
             ExitCode::from(2)
+        }
+    }
+}
+
+fn exit_code(outcome: Result<(), String>) -> ExitCode {
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
         }
     }
 }

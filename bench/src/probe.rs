@@ -1,0 +1,254 @@
+//! One load case, computed by the engine alone: what it costs, and what comes out.
+//!
+//! Nothing is written to a disk and only the compared channels are read at each step, as the
+//! programs around the peers do it. Runs as a process of its own, so that its memory is its own.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use catenix_engine::{System, simulate, solve_statics};
+use catenix_model::file::read_study;
+use catenix_model::{Channel, Model, all_channels};
+use cpu_time::ThreadTime;
+use serde::{Deserialize, Serialize};
+
+use crate::child;
+use crate::context::Context;
+
+/// What to compute.
+#[derive(Debug, Clone)]
+pub(crate) struct Task {
+    /// Model file.
+    pub model: PathBuf,
+    /// Load case.
+    pub case: String,
+    /// Channels whose statistics are wanted.
+    pub channels: Vec<String>,
+    /// Whether to stop at the equilibrium.
+    pub statics_only: bool,
+}
+
+/// What a load case cost, and what came out.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Probe {
+    /// Elements of all lines.
+    pub elements: usize,
+    /// Processor time of reading and assembling the model [s].
+    pub reading_cpu_s: f64,
+    /// Processor time of the static equilibrium [s].
+    pub statics_cpu_s: f64,
+    /// Iterations of the static equilibrium.
+    pub statics_iterations: usize,
+    /// Processor time of the motion [s].
+    pub motion_cpu_s: f64,
+    /// Simulated time [s].
+    pub simulated_s: f64,
+    /// Accepted steps.
+    pub steps: usize,
+    /// Steps repeated with a smaller size.
+    pub rejected_steps: usize,
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Factorisations of the iteration matrix.
+    pub factorisations: usize,
+    /// Largest resident memory of the process [bytes].
+    pub peak_bytes: Option<f64>,
+    /// Of each channel that was asked for.
+    pub statistics: Vec<Statistics>,
+}
+
+/// Of one channel over all steps.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Statistics {
+    /// Smallest value over the whole motion.
+    pub min: f64,
+    /// Largest value over the whole motion.
+    pub max: f64,
+    /// Mean over the statistics window.
+    pub mean: f64,
+}
+
+impl Probe {
+    /// Elapsed work of one iteration [s].
+    pub(crate) fn per_iteration(&self) -> f64 {
+        self.motion_cpu_s / self.iterations as f64
+    }
+
+    /// Processor time per simulated second [-].
+    pub(crate) fn per_simulated_second(&self) -> f64 {
+        self.motion_cpu_s / self.simulated_s
+    }
+
+    /// The statistics of a norm cannot be had from those of its parts, so a channel named `|a|`
+    /// is the length of the vector of `a_x`, `a_y` and `a_z`.
+    fn parts(model: &Model, name: &str) -> Result<Vec<Channel>, String> {
+        let find = |name: &str| {
+            let channels = all_channels(model);
+            let found = channels.into_iter().find(|channel| channel.name == name);
+            found.ok_or_else(|| format!("the model has no channel `{name}`"))
+        };
+        match name
+            .strip_prefix('|')
+            .and_then(|rest| rest.strip_suffix('|'))
+        {
+            Some(stem) => ["x", "y", "z"]
+                .iter()
+                .map(|axis| find(&format!("{stem}_{axis}")))
+                .collect(),
+            None => Ok(vec![find(name)?]),
+        }
+    }
+}
+
+impl Task {
+    /// Computes it in a process of its own.
+    pub(crate) fn run(&self, context: &Context) -> Result<Probe, String> {
+        child::json_of(&mut self.command(context))
+    }
+
+    /// The process of its own.
+    pub(crate) fn command(&self, context: &Context) -> Command {
+        let mut command = Command::new(&context.own);
+        command.arg("probe").arg(&self.model).arg(&self.case);
+        command.arg(if self.statics_only {
+            "statics"
+        } else {
+            "motion"
+        });
+        command.args(&self.channels);
+        command
+    }
+
+    /// The task that [`Task::command`] describes.
+    pub(crate) fn from_arguments(arguments: &[String]) -> Result<Task, String> {
+        match arguments {
+            [model, case, extent, channels @ ..] => Ok(Task {
+                model: PathBuf::from(model),
+                case: case.clone(),
+                channels: channels.to_vec(),
+                statics_only: extent == "statics",
+            }),
+            _ => Err("usage: catenix-bench probe MODEL CASE statics|motion CHANNEL...".to_owned()),
+        }
+    }
+
+    /// Computes it here.
+    pub(crate) fn compute(&self) -> Result<Probe, String> {
+        let clock = ThreadTime::now();
+        let model = read_case(&self.model, &self.case)?;
+        let mut columns = Vec::new();
+        for name in &self.channels {
+            columns.push(Probe::parts(&model, name)?);
+        }
+        let system = System::new(&model).map_err(|error| error.to_string())?;
+        let mut probe = Probe {
+            elements: model.lines.iter().map(|line| line.element_count()).sum(),
+            reading_cpu_s: clock.elapsed().as_secs_f64(),
+            ..Probe::default()
+        };
+        let clock = ThreadTime::now();
+        let start = solve_statics(&system, &mut |_| ControlFlow::Continue(()))
+            .map_err(|error| error.to_string())?;
+        probe.statics_cpu_s = clock.elapsed().as_secs_f64();
+        probe.statics_iterations = start.iterations;
+        if let (false, Some(settings)) = (self.statics_only, &model.dynamics) {
+            let mut history = History::new(columns);
+            let clock = ThreadTime::now();
+            let report = simulate(&system, &start, &mut |view| {
+                history.add(view.time(), |channel| view.channel(channel.target));
+                ControlFlow::Continue(())
+            })
+            .map_err(|error| error.to_string())?;
+            probe.motion_cpu_s = clock.elapsed().as_secs_f64();
+            probe.simulated_s = report.end_time_s;
+            probe.steps = report.statistics.steps;
+            probe.rejected_steps = report.statistics.rejected_steps;
+            probe.iterations = report.statistics.iterations;
+            probe.factorisations = report.statistics.factorisations;
+            probe.statistics = history.statistics(settings.statistics_window);
+        }
+        probe.peak_bytes = child::own_peak_bytes();
+        Ok(probe)
+    }
+}
+
+fn read_case(file: &Path, name: &str) -> Result<Model, String> {
+    let study = read_study(file).map_err(|errors| errors.to_string())?;
+    let mut cases = study.cases.into_iter();
+    let found = cases.find(|case| case.name == name);
+    let case = found.ok_or_else(|| format!("{}: no case `{name}`", file.display()))?;
+    Ok(case.model)
+}
+
+/// Values over all steps.
+struct History {
+    columns: Vec<Vec<Channel>>,
+    times: Vec<f64>,
+    values: Vec<Vec<f64>>,
+}
+
+impl History {
+    fn new(columns: Vec<Vec<Channel>>) -> History {
+        let values = vec![Vec::new(); columns.len()];
+        History {
+            columns,
+            times: Vec::new(),
+            values,
+        }
+    }
+
+    fn add(&mut self, time: f64, read: impl Fn(&Channel) -> f64) {
+        self.times.push(time);
+        for (parts, values) in self.columns.iter().zip(&mut self.values) {
+            values.push(match parts.as_slice() {
+                [one] => read(one),
+                parts => parts
+                    .iter()
+                    .map(|part| read(part).powi(2))
+                    .sum::<f64>()
+                    .sqrt(),
+            });
+        }
+    }
+
+    fn statistics(&self, window: f64) -> Vec<Statistics> {
+        let start = self.times.last().map_or(0.0, |end| end - window);
+        let of = |values: &Vec<f64>| Statistics {
+            min: values.iter().copied().fold(f64::INFINITY, f64::min),
+            max: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            mean: mean_from(&self.times, values, start),
+        };
+        self.values.iter().map(of).collect()
+    }
+}
+
+/// Mean of the curve through the points from `start` on.
+fn mean_from(times: &[f64], values: &[f64], start: f64) -> f64 {
+    let (mut area, mut span) = (0.0, 0.0);
+    for k in 1..times.len() {
+        let (t0, t1) = (times[k - 1].max(start), times[k]);
+        if t1 <= t0 {
+            continue;
+        }
+        let slope = (values[k] - values[k - 1]) / (times[k] - times[k - 1]);
+        let first = values[k - 1] + slope * (t0 - times[k - 1]);
+        area += 0.5 * (first + values[k]) * (t1 - t0);
+        span += t1 - t0;
+    }
+    area / span
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mean_cuts_the_step_that_the_window_begins_in() {
+        let (times, values) = ([0.0, 1.0, 3.0], [5.0, 0.0, 4.0]);
+        // From t = 2 on the line goes from 2 to 4; round-off only.
+        assert!((mean_from(&times, &values, 2.0) - 3.0).abs() < 1e-12);
+        // The whole: areas 2.5 and 4 over 3 s.
+        assert!((mean_from(&times, &values, -1.0) - 6.5 / 3.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,154 @@
+//! Ensembles: many load cases of one model in one run, against the same cases run one by one.
+
+use std::process::Command;
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use toml::Table as TomlTable;
+
+use super::{Section, kept, no_charts, recalled};
+use crate::child;
+use crate::context::Context;
+use crate::markdown::{Table, digits, grouped};
+use crate::trial::{self, MESH, Stepping};
+
+pub(crate) const SECTION: Section = Section {
+    name: "ensembles",
+    title: "Ensembles",
+    measure,
+    markdown,
+    charts: no_charts,
+};
+
+/// Load cases.
+const CASES: usize = 64;
+/// Every so many of them is run alone.
+const EVERY: usize = 8;
+/// Simulated time of each [s].
+const DURATION: f64 = 40.0;
+const STEP: f64 = 0.2;
+
+#[derive(Debug, Serialize, Deserialize)]
+struct Data {
+    cases: usize,
+    elements: usize,
+    simulated_s: f64,
+    /// Cases that were run alone.
+    alone: usize,
+    /// Processor time of a case alone, mean [s].
+    alone_cpu_s: f64,
+    /// Processor and elapsed time of all in one run on one thread [s].
+    one_thread_s: [f64; 2],
+    /// The same on as many threads as there are processors [s].
+    all_threads_s: [f64; 2],
+    threads: usize,
+}
+
+fn measure(context: &Context) -> Result<Value, String> {
+    let cases = if context.quick { 8 } else { CASES };
+    let mut variant = trial::variant(context, MESH, Stepping::Fixed(STEP))?;
+    variant.set("dynamics.duration", DURATION)?;
+    // Other currents and speeds, as a study of operating conditions has them.
+    let mut list = TomlTable::new();
+    for k in 0..cases {
+        let heading = 360.0 * k as f64 / cases as f64;
+        let speed = 0.5 + 0.5 * ((5 * k) % cases) as f64 / cases as f64;
+        let text = format!(
+            "environment.current.heading = \"{heading} deg\"\nmotions.tow.speed = {speed}\n"
+        );
+        let case: TomlTable = text.parse().map_err(|error| format!("{error}"))?;
+        list.insert(name(k), case.into());
+    }
+    variant.set("cases", list)?;
+    variant.remove_all("figures");
+    let model = variant.write(context, "ensemble")?;
+    let run = |chosen: Option<usize>, threads: usize| -> Result<[f64; 2], String> {
+        let mut command = Command::new(&context.catenix);
+        command.arg("run").arg(&model).args(["--quiet", "--json"]);
+        command.args(["--threads", &threads.to_string(), "--out"]);
+        command.arg(context.work.join("results"));
+        if let Some(k) = chosen {
+            command.args(["--case", &name(k)]);
+        }
+        let start = Instant::now();
+        let (cpu, _) = child::cpu_of(&mut command)?;
+        Ok([cpu, start.elapsed().as_secs_f64()])
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let least = |best: &mut [f64; 2], found: [f64; 2]| {
+        for (best, found) in best.iter_mut().zip(found) {
+            *best = best.min(found);
+        }
+    };
+    let chosen: Vec<usize> = (0..cases).step_by(EVERY).collect();
+    let mut alone = vec![[f64::INFINITY; 2]; chosen.len()];
+    let (mut one, mut all) = ([f64::INFINITY; 2], [f64::INFINITY; 2]);
+    for repeat in 0..context.repeats().min(2) {
+        eprintln!("  ensemble, repeat {} ...", repeat + 1);
+        for (k, best) in chosen.iter().zip(&mut alone) {
+            least(best, run(Some(*k), 1)?);
+        }
+        least(&mut one, run(None, 1)?);
+        least(&mut all, run(None, threads)?);
+    }
+    let total: f64 = alone.iter().map(|[cpu, _]| cpu).sum();
+    kept(&Data {
+        cases,
+        elements: MESH.iter().sum(),
+        simulated_s: DURATION,
+        alone: chosen.len(),
+        alone_cpu_s: total / chosen.len() as f64,
+        one_thread_s: one,
+        all_threads_s: all,
+        threads,
+    })
+}
+
+fn name(k: usize) -> String {
+    format!("c{k:02}")
+}
+
+fn markdown(data: &Value) -> Result<String, String> {
+    let d: Data = recalled(data)?;
+    let all = d.cases as f64;
+    let mut table = Table::new(&[
+        "",
+        "CPU s per case",
+        "simulated s per CPU s",
+        "against single runs",
+        "elapsed s, all cases",
+    ]);
+    let mut row = |what: String, cpu: f64, elapsed: String| {
+        table.row([
+            what,
+            digits(cpu),
+            digits(d.simulated_s / cpu),
+            format!("{:.2}", d.alone_cpu_s / cpu),
+            elapsed,
+        ]);
+    };
+    row(
+        format!("one by one (mean of {})", d.alone),
+        d.alone_cpu_s,
+        "-".to_owned(),
+    );
+    row(
+        "in one run, 1 thread".to_owned(),
+        d.one_thread_s[0] / all,
+        digits(d.one_thread_s[1]),
+    );
+    row(
+        format!("in one run, {} threads", d.threads),
+        d.all_threads_s[0] / all,
+        digits(d.all_threads_s[1]),
+    );
+    Ok(format!(
+        "{} load cases of the sea trial ({} elements; other current headings and speeds), {} s each in\n\
+         steps of {STEP} s, with `catenix run`: statics, motion and store, whole process.\n\n{}",
+        d.cases,
+        d.elements,
+        grouped(d.simulated_s),
+        table.text()
+    ))
+}
