@@ -5,8 +5,8 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use catenix_export::{ExportFormat, Thinning};
-use catenix_model::ModeRange;
 use catenix_model::file::parse_band;
+use catenix_model::{FormulationKind, ModeRange};
 use clap::builder::PossibleValue;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
@@ -54,6 +54,9 @@ pub(crate) enum Command {
     /// Compute published cases and hold them against their references
     #[command(after_help = EXIT_CODES)]
     Verify(VerifyArgs),
+    /// Compute load cases under several formulations, and print differences, errors and costs
+    #[command(after_help = EXIT_CODES)]
+    Compare(CompareArgs),
     /// Show results in the browser, also while a run writes them
     #[command(after_help = EXIT_CODES)]
     View(ViewArgs),
@@ -264,6 +267,51 @@ pub(crate) struct VerifyArgs {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct CompareArgs {
+    /// Model file (TOML)
+    #[arg(value_name = "MODEL")]
+    pub(crate) file: PathBuf,
+    /// Take only this load case; may be given several times
+    #[arg(long = "case", value_name = "NAME")]
+    pub(crate) cases: Vec<String>,
+    /// Formulations to compare
+    #[arg(
+        long,
+        value_name = "KIND,..",
+        value_delimiter = ',',
+        value_parser = formulation,
+        default_value = "dem,fem,lumped"
+    )]
+    pub(crate) formulations: Vec<FormulationKind>,
+    /// Formulation of the fine computation that errors are measured against [default: the first]
+    #[arg(long, value_name = "KIND", value_parser = formulation)]
+    pub(crate) reference: Option<FormulationKind>,
+    /// Elements of the meshes, over those of the model file
+    #[arg(
+        long,
+        value_name = "FACTOR,..",
+        value_delimiter = ',',
+        value_parser = positive,
+        default_value = "0.125,0.25,0.5,1,2"
+    )]
+    pub(crate) meshes: Vec<f64>,
+    /// Elements of the reference, over those of the model file; its steps are half as long
+    #[arg(long, value_name = "FACTOR", value_parser = positive, default_value = "4")]
+    pub(crate) reference_mesh: f64,
+    /// Error at which costs are compared
+    #[arg(long, value_name = "PERCENT", value_parser = percent, default_value = "1%")]
+    pub(crate) target: f64,
+    /// Draw cost against error, one figure per load case, into this directory
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) output: OutputArgs,
+    /// Show no progress
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct ModelArgs {
     /// Model file (TOML)
     #[arg(value_name = "MODEL")]
@@ -271,6 +319,9 @@ pub(crate) struct ModelArgs {
     /// Take only this load case; may be given several times
     #[arg(long = "case", value_name = "NAME")]
     pub(crate) cases: Vec<String>,
+    /// Formulation of the lines: dem, fem, fem-exact or lumped [default: as the model file says]
+    #[arg(long, value_name = "KIND", value_parser = formulation)]
+    pub(crate) formulation: Option<FormulationKind>,
 }
 
 #[derive(Debug, Args)]
@@ -296,6 +347,26 @@ pub(crate) struct AccuracyArgs {
     /// stays below this, and print the estimates; instead of those in the model file
     #[arg(long, value_name = "PERCENT", value_parser = percent)]
     pub(crate) accuracy: Option<f64>,
+}
+
+/// A formulation by its word in the model file.
+fn formulation(text: &str) -> Result<FormulationKind, String> {
+    let word = text.trim();
+    let known = FormulationKind::ALL
+        .into_iter()
+        .find(|kind| kind.word() == word);
+    known.ok_or_else(|| {
+        let words = FormulationKind::ALL.map(FormulationKind::word);
+        format!("write one of {}", words.join(", "))
+    })
+}
+
+/// A positive number.
+fn positive(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("write a positive number such as 0.5".to_owned()),
+    }
 }
 
 /// A relative error: `1%`, `0.5 %` or `0.01`.

@@ -6,6 +6,7 @@ mod args;
 mod commands;
 mod failure;
 mod interrupt;
+mod memory;
 mod print;
 mod progress;
 mod tables;
@@ -28,6 +29,7 @@ fn main() -> ExitCode {
         Command::Summary(args) => ("summary", args.output.json, commands::summary(args)),
         Command::Export(args) => ("export", args.output.json, commands::export(args)),
         Command::Verify(args) => ("verify", args.output.json, commands::verify(args)),
+        Command::Compare(args) => ("compare", args.output.json, commands::compare(args)),
         Command::View(args) => ("view", false, commands::view(args)),
         Command::Schema => ("schema", false, commands::schema()),
     };

@@ -1,10 +1,11 @@
 //! Charts of what the results hold.
 
 use catenix_results::{
-    CaseModes, ModeReport, ModeShapes, StoreError, StoredFigure, StoredStudy, StudyPaths,
+    CaseModes, ComparedCase, ModeReport, ModeShapes, StoreError, StoredFigure, StoredStudy,
+    StudyPaths,
 };
 
-use crate::figure::{Chart, ChartAxis, Curve};
+use crate::figure::{Chart, ChartAxis, Curve, Look};
 
 /// Most curves of a figure of modes.
 const MOST_MODES: usize = 6;
@@ -110,6 +111,36 @@ fn frequency_text(hz: f64) -> String {
         _ if hz >= 0.01 => format!("{hz:.4} Hz"),
         _ => format!("{:.3} mHz", hz * 1e3),
     }
+}
+
+/// Error against processor time of each formulation, one point per mesh; `None` without errors.
+pub fn cost_chart(case: &ComparedCase, title: &str, target: f64) -> Option<Chart> {
+    let mut curves: Vec<Curve> = case
+        .formulations
+        .iter()
+        .map(|formulation| {
+            let points = formulation.runs.iter().filter_map(|run| {
+                let percent = 100.0 * run.error?;
+                Some((run.cpu_seconds, percent))
+            });
+            Curve::new(&formulation.formulation, points.collect())
+        })
+        .filter(|curve| !curve.points.is_empty())
+        .collect();
+    let costs = curves.iter().flat_map(|curve| &curve.points).map(|p| p.0);
+    let (low, high) = costs.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), cost| {
+        (low.min(cost), high.max(cost))
+    });
+    if curves.is_empty() {
+        return None;
+    }
+    let wanted = 100.0 * target;
+    let line = vec![(low, wanted), (high, wanted)];
+    curves.push(Curve::new(&format!("{wanted} %"), line).with_look(Look::Bound));
+    let title = format!("{title}, case {}: error against cost", case.name);
+    let x = ChartAxis::logarithmic("Processor time", "s");
+    let y = ChartAxis::logarithmic("Largest error of the results that count", "%");
+    Some(Chart::new(&title, x, y, curves))
 }
 
 fn case_label(name: &str, description: &str) -> String {

@@ -13,7 +13,7 @@ mod page;
 mod picture;
 mod verification;
 
-pub use charts::{mode_charts, path_chart, study_chart};
+pub use charts::{cost_chart, mode_charts, path_chart, study_chart};
 pub use error::ReportError;
 pub use picture::{PNG_SCALE, write_figure};
 pub use verification::write_verification;

@@ -4,7 +4,8 @@
 //! [`CaseRecorder`] per load case, which writes histories, line fields, range graphs, the static
 //! state and the solver's account while the case runs. [`StoredStudy`] reads a store back, whether
 //! it was finished, interrupted or killed, and makes the same [`Summary`] from it. [`StudyPaths`]
-//! holds equilibrium paths, [`CaseModes`] natural modes, [`Verification`] a verification suite.
+//! holds equilibrium paths, [`CaseModes`] natural modes, [`Verification`] a verification suite,
+//! [`FormulationStudy`] formulations side by side.
 //!
 //! The layout of the store is in docs/results.md; it opens in xarray as it is.
 
@@ -12,6 +13,7 @@ mod case_arrays;
 mod description;
 mod envelope;
 mod error;
+mod formulations;
 mod layout;
 mod modes;
 mod outcome;
@@ -37,6 +39,9 @@ pub use description::{
 };
 pub use envelope::Envelope;
 pub use error::StoreError;
+pub use formulations::{
+    ComparedCase, ComparedFormulation, ComparedResult, ComparedRun, FormulationStudy, ReferenceRun,
+};
 pub use layout::{STORE_FORMAT, STORE_NAME, component as path_component};
 pub use modes::{CaseModes, ModeReport, ModeShapes, ModesReport, MotionShare};
 pub use outcome::{CaseOutcome, DynamicsFacts, StaticsFacts, mean_order};

@@ -21,6 +21,9 @@ use crate::watch::Watch;
 /// Elapsed time between two looks of the watch.
 pub(crate) const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
+/// Code of a model that cannot be assembled.
+pub(crate) const UNUSABLE: &str = "system::unusable";
+
 /// What ends a case early.
 #[derive(Debug, Clone)]
 pub(crate) enum Halt {
@@ -150,7 +153,7 @@ fn run_case(
 }
 
 pub(crate) fn system_of(model: &Model) -> Result<System, CaseError> {
-    System::new(model).map_err(|error| case_error("system::unusable", &error))
+    System::new(model).map_err(|error| case_error(UNUSABLE, &error))
 }
 
 pub(crate) fn settle<'a>(

@@ -2,10 +2,12 @@
 //!
 //! The engine integrates one system; the results crate stores what it is given. This crate brings
 //! the two together, for every adapter alike: [`compute_case`], [`compute_statics`],
-//! [`compute_modes`] and [`compute_path`] run one load case.
+//! [`compute_modes`] and [`compute_path`] run one load case; [`compare_formulations`] runs it under
+//! several formulations.
 
 mod accuracy;
 mod case;
+mod comparison;
 mod modes;
 mod parallel;
 mod path;
@@ -13,6 +15,7 @@ mod verification;
 mod watch;
 
 pub use case::{compute_case, compute_statics};
+pub use comparison::{ComparisonSettings, MemoryMeter, compare_formulations};
 pub use modes::compute_modes;
 pub use parallel::in_parallel;
 pub use path::compute_path;

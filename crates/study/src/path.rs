@@ -7,7 +7,7 @@ use catenix_model::{LoadCase, all_channels};
 use catenix_results::{CasePath, PathPointFacts, Status};
 use cpu_time::ThreadTime;
 
-use crate::case::{EngineSample, PROGRESS_INTERVAL, case_error, flow};
+use crate::case::{EngineSample, PROGRESS_INTERVAL, UNUSABLE, case_error, flow};
 use crate::watch::Watch;
 
 /// Follows the path that the case's `[path]` describes.
@@ -26,7 +26,7 @@ fn follow(case: &LoadCase, watch: &dyn Watch, path: &mut CasePath) {
         Ok(system) => system,
         Err(error) => {
             path.status = Status::Failed;
-            path.error = Some(case_error("system::unusable", &error));
+            path.error = Some(case_error(UNUSABLE, &error));
             return;
         }
     };

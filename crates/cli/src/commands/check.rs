@@ -35,7 +35,7 @@ pub(crate) struct CaseReport<'a> {
 
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, Failure> {
     let study = read(&args.model)?;
-    let cases = chosen_cases(&study, &args.model)?;
+    let cases = chosen_cases(&study, &args.model.cases)?;
     for case in &cases {
         System::new(&case.model).map_err(|error| Failure::System {
             case: case.name.clone(),

@@ -1,6 +1,7 @@
 //! One file per command.
 
 mod check;
+mod compare;
 mod export;
 mod modes;
 mod path;
@@ -11,6 +12,7 @@ mod verify;
 mod view;
 
 pub(crate) use check::{CheckReport, check};
+pub(crate) use compare::compare;
 pub(crate) use export::export;
 pub(crate) use modes::{CaseModesReport, ModesDocument, modes};
 pub(crate) use path::path;
@@ -39,20 +41,26 @@ pub(crate) fn schema() -> Result<Exit, Failure> {
 
 /// Reads the model file.
 fn read(args: &ModelArgs) -> Result<Study, Failure> {
-    Ok(read_study(&args.file).map_err(Box::new)?)
+    let mut study = read_study(&args.file).map_err(Box::new)?;
+    if let Some(formulation) = args.formulation {
+        for case in &mut study.cases {
+            case.model.formulation = formulation;
+        }
+    }
+    Ok(study)
 }
 
 /// The cases that the user wants, in file order; all of them when none is named.
-fn chosen_cases<'a>(study: &'a Study, args: &ModelArgs) -> Result<Vec<&'a LoadCase>, Failure> {
+fn chosen_cases<'a>(study: &'a Study, wanted: &[String]) -> Result<Vec<&'a LoadCase>, Failure> {
     let known = |name: &String| study.cases.iter().any(|case| case.name == *name);
-    if let Some(name) = args.cases.iter().find(|name| !known(name)) {
+    if let Some(name) = wanted.iter().find(|name| !known(name)) {
         let names: Vec<&str> = study.cases.iter().map(|case| case.name.as_str()).collect();
         return Err(Failure::UnknownCase {
             name: name.clone(),
             available: names.join(", "),
         });
     }
-    let chosen = |case: &&LoadCase| args.cases.is_empty() || args.cases.contains(&case.name);
+    let chosen = |case: &&LoadCase| wanted.is_empty() || wanted.contains(&case.name);
     Ok(study.cases.iter().filter(chosen).collect())
 }
 

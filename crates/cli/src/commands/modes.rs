@@ -57,7 +57,7 @@ pub(crate) struct ModesCaseSummary<'a> {
 pub(crate) fn modes(args: &ModesArgs) -> Result<Exit, Failure> {
     let study = still(read(&args.model)?);
     let provenance = provenance(&args.model)?;
-    let cases = chosen_cases(&study, &args.model)?;
+    let cases = chosen_cases(&study, &args.model.cases)?;
     let store = match &args.out {
         Some(directory) => Some(ResultStore::create(directory, &study, &cases, &provenance)?),
         None => None,

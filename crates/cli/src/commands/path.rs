@@ -26,7 +26,7 @@ struct PathReport<'a> {
 pub(crate) fn path(args: &PathArgs) -> Result<Exit, Failure> {
     let study = read(&args.model)?;
     let provenance = provenance(&args.model)?;
-    let cases = chosen_cases(&study, &args.model)?;
+    let cases = chosen_cases(&study, &args.model.cases)?;
     let interrupt = Interrupt::listen()?;
     let results = for_each_case(&cases, &args.work, &interrupt, |case, progress| {
         compute_path(case, progress)

@@ -28,7 +28,7 @@ struct RunReport<'a> {
 pub(crate) fn run(args: &RunArgs) -> Result<Exit, Failure> {
     let study = read(&args.model)?;
     let provenance = provenance(&args.model)?;
-    let cases = chosen_cases(&study, &args.model)?;
+    let cases = chosen_cases(&study, &args.model.cases)?;
     let directory = args
         .out
         .clone()

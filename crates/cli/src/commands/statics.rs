@@ -12,7 +12,7 @@ use crate::{print, tables};
 pub(crate) fn statics(args: &StaticsArgs) -> Result<Exit, Failure> {
     let study = read(&args.model)?;
     let provenance = super::run::provenance(&args.model)?;
-    let cases = chosen_cases(&study, &args.model)?;
+    let cases = chosen_cases(&study, &args.model.cases)?;
     let interrupt = Interrupt::listen()?;
     let results = for_each_case(&cases, &args.work, &interrupt, |case, progress| {
         compute_statics(case, args.accuracy.accuracy, progress)

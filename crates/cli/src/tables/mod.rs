@@ -1,6 +1,7 @@
 //! Tables for the terminal, at most 100 columns wide where the names allow it.
 
 mod check;
+mod comparison;
 mod discretisation;
 mod export;
 mod grid;
@@ -13,6 +14,7 @@ mod summary;
 mod verification;
 
 pub(crate) use check::check_text;
+pub(crate) use comparison::comparison_text;
 pub(crate) use export::export_text;
 pub(crate) use modes::modes_text;
 pub(crate) use path::path_text;

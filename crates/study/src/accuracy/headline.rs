@@ -31,7 +31,7 @@ pub struct Headline {
 }
 
 /// What a run without a store keeps: statistics of all channels and snapshots of all lines.
-pub(super) struct Collector<'m> {
+pub(crate) struct Collector<'m> {
     model: &'m Model,
     references: &'m [Reference],
     channels: Vec<Channel>,
@@ -48,7 +48,7 @@ pub(super) struct Collector<'m> {
 }
 
 impl<'m> Collector<'m> {
-    pub(super) fn new(model: &'m Model, references: &'m [Reference]) -> Collector<'m> {
+    pub(crate) fn new(model: &'m Model, references: &'m [Reference]) -> Collector<'m> {
         let mut channels = all_channels(model);
         for reference in references {
             if !channels.contains(&reference.channel) {
@@ -78,7 +78,7 @@ impl<'m> Collector<'m> {
     }
 
     /// Takes in a state: the static one, or one that a step ended with.
-    pub(super) fn add(&mut self, view: &StepView<'_>) {
+    pub(crate) fn add(&mut self, view: &StepView<'_>) {
         for (value, channel) in self.values.iter_mut().zip(&self.channels) {
             *value = view.channel(channel.target);
         }
@@ -102,7 +102,7 @@ impl<'m> Collector<'m> {
     }
 
     /// Curvature at the nodes of each line, one row per snapshot [1/m].
-    pub(super) fn curvatures(&self) -> &[Vec<Vec<f64>>] {
+    pub(crate) fn curvatures(&self) -> &[Vec<Vec<f64>>] {
         &self.curvatures
     }
 
@@ -111,7 +111,7 @@ impl<'m> Collector<'m> {
     /// Bodies give their mean positions or offsets; ends of lines their mean forces and the
     /// extremes and range of their tension; lines their extreme tensions and bending moment; and
     /// whatever the model records beyond the standard channels gives mean and extremes.
-    pub(super) fn headlines(&self) -> Vec<Headline> {
+    pub(crate) fn headlines(&self) -> Vec<Headline> {
         let mut list = Headlines {
             collector: self,
             means: self.window.range_graph().mean,

@@ -18,7 +18,7 @@ use catenix_results::{CaseError, Discretisation, ErrorEstimate};
 
 use crate::case::{Halt, dynamics_halt, flow, statics_halt, system_of};
 use crate::watch::Watch;
-use headline::{Collector, Headline};
+pub(crate) use headline::{Collector, Headline};
 use mesh::{Density, remeshed};
 
 /// Elements of each section on the mesh whose solution shows where the lines bend.
