@@ -9,10 +9,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use cargo_metadata::MetadataCommand;
 use serde_json::Value;
 
-use crate::steps::{cargo, run_command};
+use crate::written::{build_catenix, write_between};
 
 const MODEL: &str = "examples/sea-trial-1km.toml";
 const CHAPTER: &str = "docs/theory/integration.md";
@@ -72,10 +71,6 @@ struct Figures {
 
 /// Runs everything and writes the table into the chapter on integration.
 pub(crate) fn write_table(root: &Path) -> Result<(), String> {
-    run_command(&mut cargo(
-        root,
-        &["build", "--release", "--bin", "catenix"],
-    ))?;
     let bench = Bench::new(root)?;
     let mut table = String::from(
         "| case, setting | offset error, mm | error of top tension range, % | steps (rejected) | \
@@ -90,10 +85,7 @@ pub(crate) fn write_table(root: &Path) -> Result<(), String> {
             let _ = writeln!(table, "{row}");
         }
     }
-    let path = root.join(CHAPTER);
-    let chapter = fs::read_to_string(&path).map_err(|error| format!("{CHAPTER}: {error}"))?;
-    let text = between_markers(&chapter, &table)?;
-    fs::write(&path, text).map_err(|error| format!("{CHAPTER}: {error}"))
+    write_between(root, CHAPTER, [BEGIN, END], &table)
 }
 
 fn row(name: &str, found: &Figures, exact: &Figures) -> String {
@@ -113,14 +105,6 @@ fn row(name: &str, found: &Figures, exact: &Figures) -> String {
     )
 }
 
-/// Puts `table` in place of what stands between the markers.
-fn between_markers(text: &str, table: &str) -> Result<String, String> {
-    let place = || format!("{CHAPTER} needs the lines {BEGIN} and {END}");
-    let (before, rest) = text.split_once(BEGIN).ok_or_else(place)?;
-    let (_, after) = rest.split_once(END).ok_or_else(place)?;
-    Ok(format!("{before}{BEGIN}\n{table}{END}{after}"))
-}
-
 struct Bench {
     example: String,
     program: PathBuf,
@@ -129,19 +113,12 @@ struct Bench {
 
 impl Bench {
     fn new(root: &Path) -> Result<Bench, String> {
-        let target = MetadataCommand::new()
-            .manifest_path(root.join("Cargo.toml"))
-            .no_deps()
-            .exec()
-            .map_err(|error| format!("`cargo metadata` failed: {error}"))?
-            .target_directory
-            .into_std_path_buf();
+        let (program, target) = build_catenix(root)?;
         let folder = target.join("integrators");
         fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
-        let program = format!("catenix{}", std::env::consts::EXE_SUFFIX);
         Ok(Bench {
             example: fs::read_to_string(root.join(MODEL)).map_err(|error| error.to_string())?,
-            program: target.join("release").join(program),
+            program,
             folder,
         })
     }
@@ -193,18 +170,5 @@ fn replaced(text: &str, from: &str, to: &str) -> Result<String, String> {
         Ok(text.replace(from, to))
     } else {
         Err(format!("{MODEL} has changed: no `{}`", from.trim()))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_table_takes_the_place_of_the_old_one() {
-        let text = format!("one\n{BEGIN}\nold\n{END}\ntwo\n");
-        let found = between_markers(&text, "| new |\n").expect("the markers are there");
-        assert_eq!(found, format!("one\n{BEGIN}\n| new |\n{END}\ntwo\n"));
-        assert!(between_markers("no markers", "").is_err());
     }
 }

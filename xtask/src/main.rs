@@ -8,11 +8,13 @@
 
 mod bench;
 mod documentation;
+mod formulations;
 mod integrators;
 mod read_back;
 mod steps;
 mod tidy;
 mod web;
+mod written;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -26,6 +28,7 @@ usage: cargo xtask <command>
   bench [SECTION...]    cost of kernels and whole systems, and peers beside it, into bench/RESULTS.md
   bench --quick ...     the same in short and rough, into the target folder
   integrators           cost against error of the time integrators, into docs/theory/integration.md
+  formulations          formulations side by side on the sea trial, into docs/theory/formulations.md
   tidy                  only the architecture test: crate arrows, source rules, documents
 ";
 
@@ -42,6 +45,7 @@ fn main() -> ExitCode {
         }
         ["bench", ref rest @ ..] => exit_code(bench::run(&root, rest)),
         ["integrators"] => exit_code(integrators::write_table(&root)),
+        ["formulations"] => exit_code(formulations::write_table(&root)),
         ["tidy"] => report_tidy(&root),
         _ => {
             eprint!("{USAGE}");

@@ -57,7 +57,8 @@ pub(crate) fn pen(look: Look, index: usize, points: usize) -> Pen {
     let (colour, width, dash, marker) = match look {
         Look::Numbered => {
             let dash = DASHES[index % DASHES.len()];
-            (COLOURS[index % COLOURS.len()], 1.6, dash, None)
+            let marker = [Marker::Disc, Marker::Square][index % 2];
+            (COLOURS[index % COLOURS.len()], 1.6, dash, few.map(|()| marker))
         }
         Look::Computed => (BLUE, 1.6, DASHES[0], few.map(|()| Marker::Disc)),
         Look::Reference => (INK, 1.4, LONG_DASH, few.map(|()| Marker::Square)),

@@ -3,7 +3,7 @@
 //! Every formulation computes the load case on a family of meshes; a fine computation tells the
 //! error of each. Runs follow each other on one thread, so that their times compare.
 //!
-//! Source: docs/theory/formulations.md, eqs. (1) and (2).
+//! Source: docs/theory/formulations.md, eqs. (3) and (4).
 
 mod mesh;
 
@@ -296,7 +296,7 @@ fn value_of(headlines: &[Headline], name: &str) -> Option<f64> {
 
 /// Largest relative error of the results that count, and which it is.
 ///
-/// Source: docs/theory/formulations.md, eq. (1).
+/// Source: docs/theory/formulations.md, eq. (3).
 fn worst(headlines: &[Headline], truth: &[Headline]) -> Option<(f64, String)> {
     let errors = truth
         .iter()
