@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use catenix_export::{ExportFormat, Thinning};
 use catenix_model::file::parse_band;
 use catenix_model::{FormulationKind, ModeRange};
+use catenix_report::Language;
 use clap::builder::PossibleValue;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
@@ -51,6 +52,9 @@ pub(crate) enum Command {
     /// Export results as tables, for ParaView, or as NetCDF
     #[command(after_help = EXIT_CODES)]
     Export(ExportArgs),
+    /// Write a report of results: one HTML file to read and to print
+    #[command(after_help = EXIT_CODES)]
+    Report(ReportArgs),
     /// Compute published cases and hold them against their references
     #[command(after_help = EXIT_CODES)]
     Verify(VerifyArgs),
@@ -244,6 +248,28 @@ impl ValueEnum for FormatArg {
     fn to_possible_value(&self) -> Option<PossibleValue> {
         Some(PossibleValue::new(self.0.word()))
     }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReportArgs {
+    /// Directory that `catenix run` or `catenix modes` wrote, or the results.zarr in it
+    #[arg(value_name = "RESULTS")]
+    pub(crate) results: PathBuf,
+    /// File to write, replaced if it exists [default: report.html beside results.zarr]
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Language: en or zh (English, Chinese)
+    #[arg(long, value_name = "LANG", default_value = "en")]
+    pub(crate) lang: Language,
+    /// Write every figure as SVG and PNG into this directory too
+    #[arg(long, value_name = "DIR")]
+    pub(crate) figures: Option<PathBuf>,
+    /// Take templates from this directory instead of the built-in ones of the same name
+    #[arg(long, value_name = "DIR")]
+    pub(crate) templates: Option<PathBuf>,
+    /// Print one JSON document; errors are part of it
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]

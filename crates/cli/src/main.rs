@@ -28,6 +28,7 @@ fn main() -> ExitCode {
         Command::Run(args) => ("run", args.output.json, commands::run(args)),
         Command::Summary(args) => ("summary", args.output.json, commands::summary(args)),
         Command::Export(args) => ("export", args.output.json, commands::export(args)),
+        Command::Report(args) => ("report", args.json, commands::report(args)),
         Command::Verify(args) => ("verify", args.output.json, commands::verify(args)),
         Command::Compare(args) => ("compare", args.output.json, commands::compare(args)),
         Command::View(args) => ("view", false, commands::view(args)),

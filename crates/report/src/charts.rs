@@ -6,6 +6,7 @@ use catenix_results::{
 };
 
 use crate::figure::{Chart, ChartAxis, Curve, Look};
+use crate::words::Language;
 
 /// Most curves of a figure of modes.
 const MOST_MODES: usize = 6;
@@ -29,7 +30,7 @@ pub fn study_chart(study: &StoredStudy, figure: &StoredFigure) -> Result<Chart, 
         curves.push(Curve::new(&label, points));
     }
     let x = ChartAxis::linear("Time", "s");
-    let y = ChartAxis::linear(&channel_label(&figure.channel), &figure.unit);
+    let y = ChartAxis::linear(&Language::English.channel(&figure.channel), &figure.unit);
     Ok(Chart::new(&figure.title, x, y, curves).with_note(&study.note()))
 }
 
@@ -47,7 +48,7 @@ pub fn path_chart(paths: &StudyPaths, channel: &str) -> Option<Chart> {
         curves.push(Curve::new(&case_label(name, &case.description), points));
     }
     let title = format!("{}: equilibrium path", paths.title);
-    let x = ChartAxis::linear(&channel_label(channel), unit?);
+    let x = ChartAxis::linear(&Language::English.channel(channel), unit?);
     let y = ChartAxis::linear("Load factor", "");
     Some(Chart::new(&title, x, y, curves).with_note(&paths.note))
 }
@@ -55,14 +56,24 @@ pub fn path_chart(paths: &StudyPaths, channel: &str) -> Option<Chart> {
 /// Charts of the first modes that move each line, by the line's name: the component of the
 /// displacement that is largest, against arc length.
 pub fn mode_charts(modes: &CaseModes, title: &str, note: &str) -> Vec<(String, Chart)> {
+    let charts = line_modes_charts(modes, Language::English).into_iter();
+    let titled = charts.map(|(line, mut chart)| {
+        chart.title = format!("{title}: modes of {line}");
+        (line, chart.with_note(note))
+    });
+    titled.collect()
+}
+
+/// The same without titles, in any language.
+pub(crate) fn line_modes_charts(modes: &CaseModes, language: Language) -> Vec<(String, Chart)> {
     let charts = modes.lines.iter().filter_map(|line| {
-        let chart = line_modes_chart(modes, line, title)?;
-        Some((line.name.clone(), chart.with_note(note)))
+        let chart = line_modes_chart(modes, line, language)?;
+        Some((line.name.clone(), chart))
     });
     charts.collect()
 }
 
-fn line_modes_chart(modes: &CaseModes, line: &ModeShapes, title: &str) -> Option<Chart> {
+fn line_modes_chart(modes: &CaseModes, line: &ModeShapes, language: Language) -> Option<Chart> {
     let arc_length = line.arc_length.as_ref()?;
     let curves: Vec<Curve> = modes
         .report
@@ -77,11 +88,15 @@ fn line_modes_chart(modes: &CaseModes, line: &ModeShapes, title: &str) -> Option
                 return None;
             }
             let frequency = frequency_text(mode.frequency_hz.unwrap_or(f64::NAN));
-            let label = format!(
-                "mode {}, {frequency}, {}",
-                mode.number,
-                ["x", "y", "z"][axis]
-            );
+            let values = [
+                ("number", mode.number.to_string()),
+                ("frequency", frequency),
+                ("axis", ["x", "y", "z"][axis].to_owned()),
+            ];
+            let values = values
+                .each_ref()
+                .map(|(name, value)| (*name, value.as_str()));
+            let label = language.fill("modes.curve", &values);
             let heights = motion.iter().map(|d| d[axis]);
             let points = arc_length.iter().copied().zip(heights).collect();
             Some(Curve::new(&label, points))
@@ -91,15 +106,14 @@ fn line_modes_chart(modes: &CaseModes, line: &ModeShapes, title: &str) -> Option
     if curves.is_empty() {
         return None;
     }
-    let x = ChartAxis::linear("Distance from end A", "m");
-    let y = ChartAxis::linear("Displacement over the largest of the mode", "-");
-    let title = format!("{title}: modes of {}", line.name);
-    Some(Chart::new(&title, x, y, curves))
+    let x = ChartAxis::linear(language.text("axis.arc_length"), "m");
+    let y = ChartAxis::linear(language.text("modes.displacement"), "-");
+    Some(Chart::new("", x, y, curves))
 }
 
 /// Whether the mode is mostly torsion of lines or rotation of bodies.
 fn turns(mode: &ModeReport) -> bool {
-    let first = mode.motions.first().map(|share| share.motion);
+    let first = mode.motions.first().map(|share| &*share.motion);
     matches!(first, Some("torsion" | "rotation"))
 }
 
@@ -149,13 +163,4 @@ fn case_label(name: &str, description: &str) -> String {
     } else {
         format!("{name}: {description}")
     }
-}
-
-/// `hose.end_b.force_x` as "hose, end B, force x".
-fn channel_label(channel: &str) -> String {
-    channel
-        .replace("end_a", "end A")
-        .replace("end_b", "end B")
-        .replace('.', ", ")
-        .replace('_', " ")
 }

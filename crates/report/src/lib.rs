@@ -11,9 +11,13 @@ mod markdown;
 mod number;
 mod page;
 mod picture;
+mod study;
 mod verification;
+mod words;
 
 pub use charts::{cost_chart, mode_charts, path_chart, study_chart};
 pub use error::ReportError;
 pub use picture::{PNG_SCALE, write_figure};
+pub use study::{Report, ReportFigure, ReportOptions, write_report};
 pub use verification::write_verification;
+pub use words::Language;

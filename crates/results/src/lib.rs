@@ -10,7 +10,9 @@
 //! The layout of the store is in docs/results.md; it opens in xarray as it is.
 
 mod case_arrays;
+mod date;
 mod description;
+mod details;
 mod envelope;
 mod error;
 mod formulations;
@@ -28,6 +30,7 @@ mod static_summary;
 mod statistics;
 mod store;
 mod store_reader;
+mod stored_modes;
 mod stored_statistics;
 mod summarise;
 mod summary;
@@ -37,6 +40,7 @@ mod zarr;
 pub use description::{
     ArrayPlace, CaseDescription, CaseProgress, ChannelPlace, LinePlace, QuantityPlace,
 };
+pub use details::{Setting, SettingValue};
 pub use envelope::Envelope;
 pub use error::StoreError;
 pub use formulations::{

@@ -1,13 +1,15 @@
 //! Natural modes of a load case: the table that people read, and the shapes in the store.
 
-use serde::Serialize;
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
 
 use crate::StoreError;
 use crate::layout::{self, array_attributes};
 use crate::zarr::{Array, ArrayShape, Attributes, FloatKind, Group};
 
 /// Components of a shape: names of arrays, units, and what they are.
-const COMPONENTS: [(&str, &str, &str); 6] = [
+pub(crate) const COMPONENTS: [(&str, &str, &str); 6] = [
     ("displacement_x", "m", "displacement, global x"),
     ("displacement_y", "m", "displacement, global y"),
     ("displacement_z", "m", "displacement, global z"),
@@ -17,7 +19,7 @@ const COMPONENTS: [(&str, &str, &str); 6] = [
 ];
 
 /// The modes of a load case, without their shapes.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModesReport {
     /// Whether added mass moves along.
     pub added_mass: bool,
@@ -38,12 +40,12 @@ pub struct ModesReport {
 }
 
 /// One mode.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModeReport {
     /// Number, from 1; free and growing motions come first.
     pub number: usize,
     /// `vibration`, `free` or `unstable`.
-    pub kind: &'static str,
+    pub kind: Cow<'static, str>,
     /// Frequency [Hz]; 0 for a free motion, none for one that grows.
     pub frequency_hz: Option<f64>,
     /// Period [s].
@@ -67,10 +69,10 @@ pub struct ModeReport {
 }
 
 /// Share of the kinetic energy of a mode.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MotionShare {
     /// `x`, `y`, `z`, `axial`, `torsion` or `rotation`.
-    pub motion: &'static str,
+    pub motion: Cow<'static, str>,
     /// Share [-].
     pub share: f64,
 }
@@ -105,6 +107,9 @@ impl CaseModes {
         let mut attributes = Attributes::new();
         attributes.insert("added_mass".into(), u8::from(report.added_mass).into());
         attributes.insert("counted".into(), report.counted.into());
+        // Plain numbers and strings always become JSON.
+        let table = serde_json::to_string(report).unwrap_or_default();
+        attributes.insert(layout::MODES_KEY.into(), table.into());
         for (key, values) in [
             ("total_mass_kg", report.total_mass_kg.to_vec()),
             ("counted_between_hz", report.counted_between_hz.to_vec()),

@@ -2,10 +2,12 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use catenix_model::{Figure, IntegratorSettings, LoadCase, StepControl, Study};
 use serde::{Deserialize, Serialize};
 
+use crate::date::utc_text;
 use crate::layout::{self, STORE_FORMAT, STORE_NAME};
 use crate::summary::Status;
 use crate::zarr::{Attributes, Group, write_atomically};
@@ -56,6 +58,7 @@ impl ResultStore {
         insert(layout::VERSION_KEY, provenance.version.clone());
         insert("title", study.title.clone());
         insert("note", study.note.clone());
+        insert(layout::CREATED_KEY, utc_text(SystemTime::now()));
         insert("model_file", provenance.model_file.clone());
         insert("model_sha256", provenance.model_sha256());
         insert("model_text", provenance.model_text.clone());
@@ -151,7 +154,7 @@ fn clear(directory: &Path) -> Result<(), StoreError> {
             return Err(not_ours());
         }
         fs::remove_dir_all(&store).map_err(|source| StoreError::write(&store, source))?;
-        for old in ["summary.json", "figures"] {
+        for old in ["summary.json", "figures", "report.html"] {
             let path = directory.join(old);
             let removed = if path.is_dir() {
                 fs::remove_dir_all(&path)

@@ -134,7 +134,8 @@ fn mode_report((number, mode): (usize, &Mode)) -> ModeReport {
             ModeKind::Unstable => "unstable",
             ModeKind::Free => "free",
             ModeKind::Vibration => "vibration",
-        },
+        }
+        .into(),
         frequency_hz: frequency,
         period_s: frequency.filter(|hz| *hz > 0.0).map(|hz| 1.0 / hz),
         omega_squared_rad2_s2: mode.omega_squared,
@@ -145,7 +146,7 @@ fn mode_report((number, mode): (usize, &Mode)) -> ModeReport {
             .motions
             .iter()
             .map(|(motion, share)| MotionShare {
-                motion: motion_word(*motion),
+                motion: motion_word(*motion).into(),
                 share: *share,
             })
             .collect(),

@@ -69,7 +69,7 @@ fn row(mode: &ModeReport, total_mass_kg: &[f64; 3]) -> Vec<String> {
         .filter(|(place, share)| *place == 0 || share.share >= WORTH_TELLING)
         .map(|(_, share)| format!("{} {:.0}", share.motion, 100.0 * share.share))
         .collect();
-    let frequency = match (mode.kind, mode.frequency_hz) {
+    let frequency = match (&*mode.kind, mode.frequency_hz) {
         ("unstable", _) => "grows".to_owned(),
         ("free", _) => "free".to_owned(),
         (_, hz) => hz.map_or_else(String::new, digits),

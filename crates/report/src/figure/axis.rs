@@ -51,6 +51,17 @@ impl Axis {
         }
     }
 
+    /// Distance between the ends; in decades on a logarithmic axis.
+    pub(crate) fn length(&self) -> f64 {
+        self.ends.1 - self.ends.0
+    }
+
+    /// A linear axis of this length about the same middle.
+    pub(crate) fn stretched(&self, length: f64, target: usize) -> Axis {
+        let middle = 0.5 * (self.ends.0 + self.ends.1);
+        linear(middle - 0.5 * length, middle + 0.5 * length, target, false)
+    }
+
     /// Puts the labelled ticks where they are wanted; those beyond the ends are left out.
     pub(crate) fn set_ticks(&mut self, values: impl Iterator<Item = f64>) {
         let ticks = values.map(|value| Tick {
@@ -170,6 +181,14 @@ fn logarithmic(min: f64, max: f64, target: usize) -> Axis {
         ticks,
         minor: multiples(minor).collect(),
     }
+}
+
+/// The largest of 1, 2 and 5 times a power of ten that is not above `length`.
+pub(crate) fn nice_length(length: f64) -> f64 {
+    let power = 10_f64.powf(length.log10().floor());
+    let factors = [5.0, 2.0, 1.0].into_iter();
+    let mut fitting = factors.filter(|factor| factor * power <= length * (1.0 + 1e-9));
+    fitting.next().unwrap_or(1.0) * power
 }
 
 fn plain_label(value: f64) -> String {

@@ -16,6 +16,9 @@ pub struct Chart {
     pub note: String,
     /// Width of the whole drawing, in pixels.
     pub width: f64,
+    /// Whether a unit is as long across as it is up, in charts of one panel; its height then follows
+    /// from what is drawn.
+    pub true_to_scale: bool,
 }
 
 /// What an axis shows.
@@ -68,8 +71,10 @@ pub struct Curve {
 /// How a curve is drawn: told apart by dashes and markers, not by colour alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Look {
-    /// Colour and dash by its place among the curves of the panel.
+    /// Colour, dash and marker by its place among the curves of the panel.
     Numbered,
+    /// The same without markers.
+    Plain,
     /// A solid line, with discs where there are few points.
     Computed,
     /// A dashed line, with open squares where there are few points.
@@ -78,6 +83,8 @@ pub enum Look {
     Difference,
     /// A dotted line.
     Bound,
+    /// A tinted surface inside the points.
+    Between,
 }
 
 impl Chart {
@@ -93,6 +100,7 @@ impl Chart {
             }],
             note: String::new(),
             width: 900.0,
+            true_to_scale: false,
         }
     }
 

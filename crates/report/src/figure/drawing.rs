@@ -18,6 +18,8 @@ pub(crate) const INK: Colour = [0x1a, 0x1a, 0x1a];
 pub(crate) const GREY: Colour = [0x55, 0x55, 0x55];
 pub(crate) const GRID: Colour = [0xdd, 0xdd, 0xdd];
 pub(crate) const ZERO: Colour = [0x99, 0x99, 0x99];
+/// Between the smallest and the largest value.
+pub(crate) const TINT: Colour = [0xd6, 0xe6, 0xf2];
 
 /// One element of a drawing, painted in order.
 #[derive(Debug, Clone, PartialEq)]

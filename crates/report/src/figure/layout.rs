@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::chart::{Chart, ChartAxis, Panel, SMALL, Scale};
-use super::decimate::decimate;
+use super::decimate::{decimate, simplify};
 use super::drawing::{Anchor, Colour, Drawing, GREY, GRID, INK, Mark, Stroke, Text, ZERO};
 use super::font;
 use super::legend::Legend;
@@ -13,19 +13,25 @@ const TITLE: f64 = 17.0;
 const NOTE: f64 = 11.0;
 const MARGIN: f64 = 18.0;
 const RIGHT: f64 = 26.0;
+/// Least height of a panel that is true to scale.
+const LEAST_HEIGHT: f64 = 90.0;
+/// Least width of one.
+const LEAST_WIDTH: f64 = 260.0;
+/// Lines may leave out points that lie so near to them; the eye sees no less at 300 dots per inch.
+const DRAWN_EXACTLY: f64 = 0.12;
 /// Between two panels.
 const PANEL_GAP: f64 = 16.0;
 
 impl Chart {
     /// Lays the chart out.
     pub fn draw(&self) -> Drawing {
-        let x = Ruler::new(
+        let mut x = Ruler::new(
             &self.x,
             self.x_values(),
             (self.width / 100.0) as usize,
             false,
         );
-        let rulers: Vec<Ruler> = self
+        let mut rulers: Vec<Ruler> = self
             .panels
             .iter()
             .map(|panel| {
@@ -34,35 +40,46 @@ impl Chart {
                 Ruler::new(&panel.y, values, target, true)
             })
             .collect();
-        let widest = rulers
-            .iter()
-            .flat_map(|ruler| &ruler.axis.ticks)
-            .map(|tick| font::text_width(&tick.label, SMALL, false))
-            .fold(0.0, f64::max);
-        let left = MARGIN + SMALL + 14.0 + widest + 8.0;
-        let right = self.width - RIGHT;
+        let mut right = self.width - RIGHT;
+        let left = |rulers: &[Ruler]| {
+            let ticks = rulers.iter().flat_map(|ruler| &ruler.axis.ticks);
+            let widths = ticks.map(|tick| font::text_width(&tick.label, SMALL, false));
+            MARGIN + SMALL + 14.0 + widths.fold(0.0, f64::max) + 8.0
+        };
+        let mut heights: Vec<f64> = self.panels.iter().map(|panel| panel.height).collect();
+        if let (1, true) = (rulers.len(), self.true_to_scale) {
+            // The ticks of the new axis may take another width, which changes its scale again.
+            let most = self.panels[0].height;
+            for _ in 0..2 {
+                let width = right - left(&rulers);
+                let height = Ruler::share_scale(&mut x, &mut rulers[0], width, most);
+                (right, heights[0]) = (left(&rulers) + height.0, height.1);
+            }
+        }
+        let left = left(&rulers);
         let mut marks = Vec::new();
 
         // Bold letters are about a tenth wider than the regular ones that `wrap` measures.
         let mut top = MARGIN;
-        for line in font::wrap(&self.title, TITLE * 1.1, right - left) {
+        for line in font::wrap(&self.title, TITLE * 1.1, self.width - RIGHT - left) {
             let at = (left, top + TITLE);
             marks.push(text(at, Anchor::Start, TITLE, INK, line, true));
             top += TITLE + 6.0;
         }
-        top += 8.0;
+        top += if self.title.is_empty() { 0.0 } else { 8.0 };
 
         let last = self.panels.len().saturating_sub(1);
         let mut bottom = top;
-        for (index, (panel, y)) in self.panels.iter().zip(&rulers).enumerate() {
+        let sized = self.panels.iter().zip(&heights);
+        for (index, ((panel, height), y)) in sized.zip(&rulers).enumerate() {
             let frame = Frame {
                 left,
                 right,
                 top,
-                bottom: top + panel.height,
+                bottom: top + height,
             };
             frame.axes(&x.axis, &y.axis, index == last, &mut marks);
-            let room = panel.height + if index == last { 0.0 } else { PANEL_GAP };
+            let room = height + if index == last { 0.0 } else { PANEL_GAP };
             frame.y_title(&y.title, room, &mut marks);
             for (curve, pen) in panel.curves.iter().zip(pens(panel)) {
                 frame.curve(&curve.points, &x, y, &pen, &mut marks);
@@ -75,12 +92,20 @@ impl Chart {
         let below = bottom + 44.0;
         let title = text((middle, below), Anchor::Middle, SMALL, INK, x.title, false);
         marks.push(title);
-        let legend = self.legend(right - left);
-        marks.extend(legend.marks(left, below + 14.0));
-        let mut bottom = below + 14.0 + legend.height();
+        let beside = self.width - RIGHT - right - 24.0;
+        let mut legend = self.legend(self.width - RIGHT - left);
+        let mut bottom = below + 14.0;
+        if legend.width() <= beside && self.true_to_scale {
+            // Beside a narrow panel, in one column.
+            legend = self.legend(beside);
+            marks.extend(legend.marks(right + 24.0, top - PANEL_GAP - heights[0] - 4.0));
+        } else {
+            marks.extend(legend.marks(left, bottom));
+            bottom += legend.height();
+        }
         if !self.note.is_empty() {
             bottom += 8.0;
-            for line in font::wrap(&self.note, NOTE, right - left) {
+            for line in font::wrap(&self.note, NOTE, self.width - RIGHT - left) {
                 bottom += NOTE + 4.0;
                 let at = (left, bottom);
                 marks.push(text(at, Anchor::Start, NOTE, GREY, line, false));
@@ -169,6 +194,24 @@ impl Ruler {
     fn place(&self, value: f64) -> f64 {
         self.axis.place(value * self.factor)
     }
+
+    /// Makes a unit equally long on both axes of a panel; returns its width and height, at most
+    /// `width` and `most` pixels.
+    fn share_scale(x: &mut Ruler, y: &mut Ruler, width: f64, most: f64) -> (f64, f64) {
+        let metres = |ruler: &Ruler| ruler.axis.length() / ruler.factor;
+        let (across, up) = (metres(x), metres(y));
+        let pixels = (width / across).min(most / up);
+        let height = (pixels * up).max(LEAST_HEIGHT);
+        let width = (1.08 * pixels * across).max(LEAST_WIDTH).min(width);
+        x.stretch(width / pixels, (width / 70.0) as usize);
+        y.stretch(height / pixels, (height / 40.0).clamp(3.0, 12.0) as usize);
+        (width, height)
+    }
+
+    /// Lengthens the axis about its middle to `length`, in the unit of the values.
+    fn stretch(&mut self, length: f64, target: usize) {
+        self.axis = self.axis.stretched(length * self.factor, target);
+    }
 }
 
 /// The rectangle of a panel.
@@ -250,24 +293,33 @@ impl Frame {
 
     /// A curve, in as many pieces as gaps ask for, with its markers.
     fn curve(&self, points: &[(f64, f64)], x: &Ruler, y: &Ruler, pen: &Pen, marks: &mut Vec<Mark>) {
-        let buckets = (self.right - self.left) as usize;
-        let placed: Vec<(f64, f64)> = decimate(points, buckets)
-            .into_iter()
-            .map(|(at, value)| (self.x(x.place(at)), self.y(y.place(value))))
-            .collect();
-        let pieces = placed.split(|(x, y)| !(x.is_finite() && y.is_finite()));
-        for piece in pieces {
+        let buckets = (0.5 * (self.right - self.left)) as usize;
+        let place = |(at, value): (f64, f64)| (self.x(x.place(at)), self.y(y.place(value)));
+        let is_drawn = |(x, y): &(f64, f64)| x.is_finite() && y.is_finite();
+        let placed: Vec<(f64, f64)> = decimate(points, buckets).into_iter().map(place).collect();
+        for piece in placed.split(|point| !is_drawn(point)) {
             if piece.len() > 1 {
-                marks.push(Mark::Path {
-                    points: piece.to_vec(),
-                    stroke: pen.stroke.clone(),
+                let points = simplify(piece, DRAWN_EXACTLY);
+                marks.push(match pen.stroke.width {
+                    0.0 => Mark::Shape {
+                        points,
+                        fill: pen.stroke.colour,
+                        stroke: pen.stroke.clone(),
+                    },
+                    _ => Mark::Path {
+                        points,
+                        stroke: pen.stroke.clone(),
+                    },
                 });
             }
-            let signs = pen.marker.into_iter().flat_map(|marker| {
-                let sign = move |point: &(f64, f64)| marker.mark(*point, pen.stroke.colour);
-                piece.iter().map(sign)
-            });
-            marks.extend(signs);
+        }
+        let Some(marker) = pen.marker else {
+            return;
+        };
+        let places = pen.spread.places(points.len()).into_iter();
+        let marked = places.filter_map(|index| points.get(index).copied());
+        for at in marked.map(place).filter(is_drawn) {
+            marks.extend(marker.marks(at, pen.stroke.colour));
         }
     }
 }

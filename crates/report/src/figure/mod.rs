@@ -8,13 +8,15 @@
 mod axis;
 mod chart;
 mod decimate;
-mod drawing;
-mod font;
+pub(crate) mod drawing;
+pub(crate) mod font;
 mod layout;
 mod legend;
-mod look;
+pub(crate) mod look;
 mod png;
 mod svg;
 
+pub(crate) use axis::nice_length;
 pub use chart::{Chart, ChartAxis, Curve, Look, Panel, Scale};
+pub(crate) use decimate::simplify;
 pub use drawing::Drawing;

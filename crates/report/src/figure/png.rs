@@ -96,8 +96,6 @@ fn polyline(points: &[(f64, f64)], closed: bool) -> Option<Path> {
 
 /// The outlines of all glyphs of a text.
 fn outline(text: &Text) -> Option<Path> {
-    let face = font::face(text.bold)?;
-    let scale = text.size / f64::from(face.units_per_em());
     let width = font::text_width(&text.content, text.size, text.bold);
     let shift = match text.anchor {
         Anchor::Start => 0.0,
@@ -109,21 +107,21 @@ fn outline(text: &Text) -> Option<Path> {
         origin: text.at,
         along: shift,
         rise: 0.0,
-        scale,
+        scale: 1.0,
         upwards: text.upwards,
     };
     for (piece, raised) in pieces(&text.content) {
         let (size, rise) = if raised {
-            (RAISED_SIZE, RAISED_BY * text.size)
+            (RAISED_SIZE * text.size, RAISED_BY * text.size)
         } else {
-            (1.0, 0.0)
+            (text.size, 0.0)
         };
-        pen.scale = scale * size;
         pen.rise = rise;
-        for character in piece.chars() {
-            // Glyph 0 is the empty box that stands for a character which the font does not have.
-            face.outline_glyph(face.glyph_index(character).unwrap_or_default(), &mut pen);
-            pen.along += font::advance(&face, character) * pen.scale;
+        let visible = piece.chars().filter(|character| !character.is_control());
+        for glyph in visible.filter_map(|character| font::glyph(character, text.bold)) {
+            pen.scale = size / f64::from(glyph.face.units_per_em());
+            glyph.face.outline_glyph(glyph.id, &mut pen);
+            pen.along += glyph.advance * size;
         }
     }
     pen.builder.finish()

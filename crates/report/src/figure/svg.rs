@@ -7,7 +7,8 @@ use super::font::{RAISED_BY, RAISED_SIZE};
 use crate::number::pieces;
 
 /// Fonts by preference: the built-in one where it is installed, then what most systems have.
-const FONTS: &str = "'Noto Sans','Helvetica Neue',Arial,'Liberation Sans',sans-serif";
+const FONTS: &str = "'Noto Sans','Helvetica Neue',Arial,'Liberation Sans','Noto Sans CJK SC',\
+                     'Microsoft YaHei','PingFang SC','Source Han Sans SC',sans-serif";
 
 impl Drawing {
     /// The drawing as an SVG document.

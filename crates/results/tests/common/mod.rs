@@ -256,7 +256,7 @@ pub fn modes() -> CaseModes {
     let numbers = 1..=3;
     let mode = |number: usize| ModeReport {
         number,
-        kind: if number == 1 { "free" } else { "vibration" },
+        kind: if number == 1 { "free" } else { "vibration" }.into(),
         frequency_hz: Some(0.5 * (number - 1) as f64),
         period_s: (number > 1).then(|| 2.0 / (number - 1) as f64),
         omega_squared_rad2_s2: number as f64,
@@ -264,7 +264,7 @@ pub fn modes() -> CaseModes {
         moves_most: "pipe".to_owned(),
         arc_length_m: Some(10.0),
         motions: vec![MotionShare {
-            motion: "y",
+            motion: "y".into(),
             share: 1.0,
         }],
         damping_ratio: (number > 1).then_some(0.01),
