@@ -50,7 +50,10 @@ pub(crate) fn write_table(root: &Path) -> Result<(), String> {
         let figure = format!("formulations-cost-{name}.svg");
         files.push((format!("cost-{name}.svg"), figure.clone()));
         text.push_str(&case_table(case, name));
-        let _ = writeln!(text, "\n![Error against cost, case {name}](figures/{figure})\n");
+        let _ = writeln!(
+            text,
+            "\n![Error against cost, case {name}](figures/{figure})\n"
+        );
     }
     println!("{text}");
     let figures = root.join(FIGURES);

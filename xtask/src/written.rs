@@ -16,8 +16,12 @@ pub(crate) fn write_between(
 ) -> Result<(), String> {
     let path = root.join(document);
     let old = fs::read_to_string(&path).map_err(|error| format!("{document}: {error}"))?;
-    let new = between(&old, markers, text)
-        .ok_or_else(|| format!("{document} needs the lines {} and {}", markers[0], markers[1]))?;
+    let new = between(&old, markers, text).ok_or_else(|| {
+        format!(
+            "{document} needs the lines {} and {}",
+            markers[0], markers[1]
+        )
+    })?;
     fs::write(&path, new).map_err(|error| format!("{document}: {error}"))
 }
 

@@ -58,10 +58,21 @@ fn formulations_are_compared_at_equal_mesh_and_at_equal_error() {
 #[test]
 fn tables_name_every_formulation_and_unknown_words_are_refused() {
     let bench = Bench::new("");
-    let arguments = ["compare", "model.toml", "--formulations", "dem", "--meshes", "1"];
+    let arguments = [
+        "compare",
+        "model.toml",
+        "--formulations",
+        "dem",
+        "--meshes",
+        "1",
+    ];
     let (code, stdout, stderr) = bench.run(&arguments);
     assert_eq!(code, 0, "{stderr}");
-    for text in ["Reference: dem with 40 elements", "on equal mesh", "CPU s at 1 %"] {
+    for text in [
+        "Reference: dem with 40 elements",
+        "on equal mesh",
+        "CPU s at 1 %",
+    ] {
         assert!(stdout.contains(text), "{text} is not in\n{stdout}");
     }
     let (code, _, stderr) = bench.run(&["compare", "model.toml", "--formulations", "dem,spectral"]);

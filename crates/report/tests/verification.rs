@@ -2,6 +2,8 @@
 // A panic is how a test fails, and this file is nothing but tests.
 #![allow(clippy::unwrap_used)]
 
+mod pages;
+
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -10,7 +12,8 @@ use catenix_results::{
     Verification, VerifiedCase, VerifiedConvergence, VerifiedCurve, VerifiedEstimate,
     VerifiedNumber,
 };
-use roxmltree::{Document, Node, ParsingOptions};
+use pages::{parse, text};
+use roxmltree::{Document, Node};
 
 const HOSTILE: &str = "<b>&\"'提升管</b>\u{7}";
 
@@ -221,21 +224,6 @@ fn written(report: &Verification, directory: &Path) -> String {
     assert_eq!(unique.len(), files.len());
     assert_eq!(files[0], directory.join("index.html"));
     std::fs::read_to_string(&files[0]).unwrap()
-}
-
-/// The page is HTML and at the same time well-formed XML.
-fn parse(page: &str) -> Document<'_> {
-    let options = ParsingOptions {
-        allow_dtd: true,
-        ..ParsingOptions::default()
-    };
-    Document::parse_with_options(page, options).unwrap()
-}
-
-fn text(node: Node<'_, '_>) -> String {
-    let pieces = node.descendants().filter(Node::is_text);
-    let text: String = pieces.filter_map(|piece| piece.text()).collect();
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 fn with_class<'a>(document: &'a Document<'a>, tag: &str, class: &str) -> Vec<Node<'a, 'a>> {

@@ -13,7 +13,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("catenix-engine", &["catenix-numerics", "catenix-model"]),
     ("catenix-results", &["catenix-model"]),
     ("catenix-viewer", &["catenix-results", "catenix-model"]),
-    ("catenix-report", &["catenix-results"]),
+    ("catenix-report", &["catenix-results", "catenix-model"]),
     ("catenix-export", &["catenix-results", "catenix-model"]),
     (
         "catenix-study",

@@ -97,7 +97,7 @@ impl Chart {
         let mut bottom = below + 14.0;
         if legend.width() <= beside && self.true_to_scale {
             // Beside a narrow panel, in one column.
-            legend = self.legend(beside);
+            legend = self.legend(legend.width());
             marks.extend(legend.marks(right + 24.0, top - PANEL_GAP - heights[0] - 4.0));
         } else {
             marks.extend(legend.marks(left, bottom));

@@ -46,18 +46,7 @@ pub(super) fn add(data: &StudyData<'_>, builder: &mut Builder) -> Result<(), Sto
         wanted
             .channels
             .retain(|channel| drawn.insert(channel.clone()));
-        for (part, channels) in wanted.channels.chunks(MOST_PANELS).enumerate() {
-            let wanted = Wanted {
-                file: match part {
-                    0 => wanted.file.clone(),
-                    part => format!("{}-{}", wanted.file, part + 1),
-                },
-                channels: channels.to_vec(),
-                title: wanted.title.clone(),
-                object: wanted.object.clone(),
-            };
-            draw(&wanted, &computed, builder)?;
-        }
+        draw(&wanted, &computed, builder)?;
     }
     Ok(())
 }
@@ -197,42 +186,52 @@ fn draw(wanted: &Wanted, cases: &[&CaseData], builder: &mut Builder) -> Result<(
             .map(|(panel, range, _)| *range > VARIES * largest(&panel.y.unit))
             .collect();
         let kept = panels.into_iter().zip(varies).filter(|(_, varies)| *varies);
-        let mut panels: Vec<Panel> = kept.map(|((panel, ..), _)| panel).collect();
-        let Some(first) = panels.first() else {
-            continue;
-        };
-        let axis = first.y.clone();
-        let height = match panels.len() {
-            1 => 270.0,
-            2 => 170.0,
-            _ => 140.0,
-        };
-        let last = panels.len() - 1;
-        for (index, panel) in panels.iter_mut().enumerate() {
-            panel.height = height;
-            if index < last {
-                // The legend is about all panels.
-                panel
-                    .curves
-                    .iter_mut()
-                    .for_each(|curve| curve.label.clear());
+        let panels: Vec<Panel> = kept.map(|((panel, ..), _)| panel).collect();
+        for (sheet, panels) in panels.chunks(MOST_PANELS).enumerate() {
+            let mut file = wanted.file.clone();
+            if part > 0 {
+                file = format!("{file}-cases-{}", part + 1);
             }
+            if sheet > 0 {
+                file = format!("{file}-{}", sheet + 1);
+            }
+            let figure = NewFigure {
+                name: &file,
+                title: &wanted.title,
+                caption: "",
+            };
+            builder.chart(&figure, stacked(panels, language.text("axis.time")));
         }
-        let x = ChartAxis::linear(language.text("axis.time"), "s");
-        let mut chart = Chart::new("", x, axis, Vec::new());
-        chart.panels = panels;
-        let file = match part {
-            0 => wanted.file.clone(),
-            part => format!("{}-cases-{}", wanted.file, part + 1),
-        };
-        let figure = NewFigure {
-            name: &file,
-            title: &wanted.title,
-            caption: "",
-        };
-        builder.chart(&figure, chart);
     }
     Ok(())
+}
+
+/// Panels below each other, with one legend.
+fn stacked(panels: &[Panel], time: &str) -> Chart {
+    let height = match panels.len() {
+        1 => 270.0,
+        2 => 170.0,
+        _ => 140.0,
+    };
+    let mut chart = Chart::new(
+        "",
+        ChartAxis::linear(time, "s"),
+        ChartAxis::linear("", ""),
+        Vec::new(),
+    );
+    chart.panels = panels.to_vec();
+    let last = chart.panels.len().saturating_sub(1);
+    for (index, panel) in chart.panels.iter_mut().enumerate() {
+        panel.height = height;
+        if index < last {
+            // The legend is about all panels.
+            panel
+                .curves
+                .iter_mut()
+                .for_each(|curve| curve.label.clear());
+        }
+    }
+    chart
 }
 
 /// Smallest and largest value of the curves.

@@ -165,7 +165,7 @@ fn single(case: &Range, quantity: &str, unit: &str, builder: &Builder) -> Chart 
         band.extend(case.points(&case.window.max).into_iter().rev());
         curves.push(Curve::new(text("ranges.window"), band).with_look(Look::Between));
         let mean = case.points(&case.window.mean);
-        curves.push(Curve::new(text("ranges.mean"), mean).with_look(Look::Plain));
+        curves.push(Curve::new(text("ranges.mean"), mean).with_look(Look::Computed));
         if let Some(run) = &case.run {
             for (key, values) in [("ranges.largest", &run.max), ("ranges.smallest", &run.min)] {
                 curves.push(Curve::new(text(key), case.points(values)).with_look(Look::Plain));
@@ -173,7 +173,7 @@ fn single(case: &Range, quantity: &str, unit: &str, builder: &Builder) -> Chart 
         }
     } else {
         let mean = case.points(&case.window.mean);
-        curves.push(Curve::new("", mean).with_look(Look::Plain));
+        curves.push(Curve::new("", mean).with_look(Look::Computed));
     }
     let y = ChartAxis::linear(&builder.language.quantity(quantity), unit);
     let mut chart = Chart::new(

@@ -9,8 +9,8 @@ use super::histories::CASES_PER_FIGURE;
 use crate::figure::{Chart, ChartAxis, Curve, Panel};
 use crate::words::Language;
 
-/// Displacements smaller than this share of the system's size count as none.
-const MOVED: f64 = 1e-4;
+/// Displacements smaller than this share of the system's size are not seen in a figure.
+const MOVED: f64 = 5e-3;
 
 /// An extent smaller than this share of the largest is not worth a view.
 const LEAST_SEEN: f64 = 0.03;

@@ -270,7 +270,7 @@ impl Frame {
             14.0
         };
         let below = 62.0;
-        let side = if is_wide { 26.0 } else { widest + 40.0 };
+        let side = if is_wide { 26.0 } else { widest + 58.0 };
         let room = WIDTH - 2.0 * MARGIN - depth_room - 2.0 * side;
         let scale = (room.max(80.0) / across).min((MOST_HEIGHT / up).min(1e9));
         let (width, tall) = (scale * across, (scale * up).max(40.0));

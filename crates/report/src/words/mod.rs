@@ -82,9 +82,10 @@ impl Language {
             Some((before, place)) => {
                 let (object, quantity) = before.rsplit_once('.').unwrap_or(("", before));
                 let quantity = self.quantity(quantity);
+                let place = spaced(place);
                 (
                     object,
-                    self.fill("channel.at", &[("quantity", &quantity), ("place", place)]),
+                    self.fill("channel.at", &[("quantity", &quantity), ("place", &place)]),
                 )
             }
             None => (object, self.quantity(quantity)),
@@ -121,6 +122,14 @@ impl Language {
     pub(crate) fn characters(self) -> std::collections::BTreeSet<char> {
         let texts = MESSAGES.iter().map(|message| message.text(self));
         texts.flat_map(str::chars).collect()
+    }
+}
+
+/// A number and its unit with a space between: `225m` is "225 m".
+fn spaced(place: &str) -> String {
+    match place.find(|c: char| c.is_alphabetic()) {
+        Some(unit) => format!("{} {}", place[..unit].trim_end(), &place[unit..]),
+        None => place.to_owned(),
     }
 }
 
