@@ -46,4 +46,43 @@ pub struct Vessel {
     pub heading: f64,
     /// Motions, added together; empty for an anchor.
     pub motions: Vec<Motion>,
+    /// What it looks like in pictures; nothing is computed from it.
+    pub appearance: Appearance,
+}
+
+/// What a vessel looks like in pictures, as far as the model file says.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Appearance {
+    /// What kind of thing it is.
+    pub shape: Option<VesselShape>,
+    /// Length from end to end [m].
+    pub length: Option<f64>,
+}
+
+/// Kinds of vessels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VesselShape {
+    /// A ship with a derrick amidships.
+    Ship,
+    /// A semi-submersible platform.
+    Platform,
+    /// A buoy.
+    Buoy,
+    /// A vehicle on the seabed.
+    Crawler,
+    /// A fixed point.
+    Anchor,
+}
+
+impl VesselShape {
+    /// Its name in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            VesselShape::Ship => "ship",
+            VesselShape::Platform => "platform",
+            VesselShape::Buoy => "buoy",
+            VesselShape::Crawler => "crawler",
+            VesselShape::Anchor => "anchor",
+        }
+    }
 }

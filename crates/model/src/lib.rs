@@ -19,7 +19,7 @@ pub use analysis::{
     DynamicsSettings, FormulationKind, IntegratorSettings, ModeRange, ModeSettings,
     StaticsSettings, StepControl,
 };
-pub use body::{Body, Vessel};
+pub use body::{Appearance, Body, Vessel, VesselShape};
 pub use environment::{Current, CurrentPoint, Environment, Seabed, Water};
 pub use line::{
     Attachment, EndConnection, Joint, Line, LineEnd, LineType, NaturalShape, PipeWall, Section,

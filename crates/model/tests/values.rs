@@ -5,8 +5,8 @@ use std::path::Path;
 use approx::assert_relative_eq;
 use catenix_model::file::parse_study;
 use catenix_model::{
-    ChannelTarget, EndConnection, IntegratorSettings, Joint, LineEnd, LineQuantity, Model, Motion,
-    Statistic, StepControl, Study, SupportRef,
+    Appearance, ChannelTarget, EndConnection, IntegratorSettings, Joint, LineEnd, LineQuantity,
+    Model, Motion, Statistic, StepControl, Study, SupportRef, VesselShape,
 };
 
 const BASE: &str = r#"
@@ -306,6 +306,46 @@ references = [
     assert_eq!((curvature.low, curvature.statistic), (0.1, Statistic::Mean));
     assert_eq!((force.low, force.high), (-2000.0, -1500.0));
     assert_eq!(force.statistic, Statistic::Min);
+}
+
+#[test]
+fn a_vessel_looks_as_the_file_says_and_an_anchor_like_one() {
+    let text = BASE.replace(
+        "heading = \"90 deg\"",
+        "heading = \"90 deg\"\nshape = \"platform\"\nlength = \"0.1 km\"",
+    );
+    let given = study(&text).cases.remove(0).model;
+    assert_eq!(
+        given.vessels[0].appearance,
+        Appearance {
+            shape: Some(VesselShape::Platform),
+            length: Some(100.0)
+        }
+    );
+    let plain = model("");
+    assert_eq!(plain.vessels[0].appearance, Appearance::default());
+    let anchor = plain.vessels[1].appearance;
+    assert_eq!(anchor.shape, Some(VesselShape::Anchor));
+}
+
+#[test]
+fn a_vessel_of_no_known_shape_or_of_no_length_is_told() {
+    let text = BASE.replace("heading = \"90 deg\"", "shape = \"shipp\"\nlength = 0");
+    let errors = parse_study(&text, "values.toml", Path::new("/nonexistent")).unwrap_err();
+    let told: Vec<String> = errors
+        .diagnostics
+        .iter()
+        .map(|error| {
+            let help = error.help.as_deref().unwrap_or_default();
+            format!("{}: {}; {help}", error.line, error.message)
+        })
+        .collect();
+    let shape = "15: `shape` cannot be `shipp`; did you mean `ship`? It is one of `ship`, \
+                 `platform`, `buoy` or `crawler`";
+    let length = "16: `length` must be greater than zero, but is 0";
+    assert_eq!(told.len(), 2, "{told:#?}");
+    assert_eq!(told[0], shape);
+    assert!(told[1].starts_with(length), "{}", told[1]);
 }
 
 #[test]

@@ -43,6 +43,14 @@ pub struct SceneVessel {
     pub heading_deg: f64,
     /// Whether a motion is prescribed; an anchor stays.
     pub moves: bool,
+    /// `ship`, `platform`, `buoy`, `crawler` or `anchor`; null where the model does not say, absent
+    /// in stores of earlier versions.
+    #[serde(default)]
+    pub shape: Option<String>,
+    /// Length from end to end [m]; null where the model does not say, absent in stores of earlier
+    /// versions.
+    #[serde(default)]
+    pub length_m: Option<f64>,
 }
 
 /// A body.
@@ -138,6 +146,8 @@ impl Scene {
                     position_m: vessel.position,
                     heading_deg: vessel.heading.to_degrees(),
                     moves: !vessel.motions.is_empty(),
+                    shape: vessel.appearance.shape.map(|shape| shape.word().to_owned()),
+                    length_m: vessel.appearance.length,
                 })
                 .collect(),
             bodies: model

@@ -186,7 +186,7 @@ impl PrescribedMotion {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use catenix_model::Degree;
+    use catenix_model::{Appearance, Degree};
 
     fn vessel() -> PrescribedMotion {
         let harmonic = |degree, amplitude, period| Motion::Harmonic {
@@ -225,6 +225,7 @@ mod tests {
                     ],
                 },
             ],
+            appearance: Appearance::default(),
         })
     }
 
@@ -259,6 +260,7 @@ mod tests {
             motions: vec![Motion::Tow {
                 legs: vec![leg(0.0, 0.5), leg(100.0, -0.5)],
             }],
+            appearance: Appearance::default(),
         });
         // Half the ramp's distance is lost, by symmetry.
         assert!((tow.at(100.0).position.x - 0.5 * 99.0).abs() < 1e-12);

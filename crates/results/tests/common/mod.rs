@@ -8,7 +8,7 @@
 use std::path::Path;
 
 use catenix_model::{
-    Axis, Body, Channel, ChannelTarget, Current, DynamicsSettings, Environment, Figure,
+    Appearance, Axis, Body, Channel, ChannelTarget, Current, DynamicsSettings, Environment, Figure,
     IntegratorSettings, Line, LineEnd, LineType, LoadCase, ModeRange, ModeSettings, Model,
     OutputSettings, PipeWall, Reference, Section, StaticsSettings, Statistic, StepControl, Study,
     Vessel, Water,
@@ -191,6 +191,7 @@ fn model() -> Model {
             position: [0.0; 3],
             heading: 0.0,
             motions: Vec::new(),
+            appearance: Appearance::default(),
         }],
         loads: Vec::new(),
         statics: StaticsSettings {

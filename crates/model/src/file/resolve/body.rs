@@ -6,8 +6,8 @@ use crate::file::dimension::Length;
 use crate::file::log::Log;
 use crate::file::quantity::Real;
 use crate::file::read::Vector;
-use crate::file::tables::{AnchorTable, BodyTable, VesselTable};
-use crate::{Body, Environment, Motion, Vessel};
+use crate::file::tables::{AnchorTable, BodyTable, ShapeChoice, VesselTable};
+use crate::{Appearance, Body, Environment, Motion, Vessel, VesselShape};
 
 use super::Slot;
 use super::line::Buoyancy;
@@ -94,7 +94,20 @@ pub(super) fn vessel(
         position: components(&table.position),
         heading: table.heading.si,
         motions,
+        appearance: Appearance {
+            shape: table.shape.as_ref().map(shape),
+            length: table.length.as_ref().map(|length| length.si),
+        },
     })
+}
+
+fn shape(choice: &ShapeChoice) -> VesselShape {
+    match choice {
+        ShapeChoice::Ship => VesselShape::Ship,
+        ShapeChoice::Platform => VesselShape::Platform,
+        ShapeChoice::Buoy => VesselShape::Buoy,
+        ShapeChoice::Crawler => VesselShape::Crawler,
+    }
 }
 
 /// An anchor is a vessel that does not move.
@@ -105,6 +118,10 @@ pub(super) fn anchor(table: &AnchorTable, name: &str) -> Vessel {
         position,
         heading: 0.0,
         motions: Vec::new(),
+        appearance: Appearance {
+            shape: Some(VesselShape::Anchor),
+            length: None,
+        },
     }
 }
 

@@ -1,6 +1,6 @@
 //! `[bodies.*]`, `[vessels.*]` and `[anchors.*]`.
 
-use crate::file::define::table;
+use crate::file::define::{choice, table};
 use crate::file::dimension::{Angle, Area, Force, Length, Mass, MassMoment, Volume};
 use crate::file::quantity::{NonNegative, Positive, Real};
 use crate::file::read::{Text, Vector};
@@ -56,6 +56,25 @@ table! {
         heading: Real<Angle> = "0 deg",
         /// Names from `motions`, added together; absent: it stays where it is.
         motions: Option<Vec<Text>>,
+        /// What it looks like in the viewer; absent: a ship, or a crawler where it lies in the
+        /// lower half of the water. Nothing is computed from it.
+        shape: Option<ShapeChoice>,
+        /// Length from end to end, for the viewer; absent: a usual one. Nothing is computed from it.
+        length: Option<Positive<Length>>,
+    }
+}
+
+choice! {
+    /// Shapes of vessels in the viewer, bow towards local x, waterline at the origin.
+    pub(super) enum ShapeChoice {
+        /// A ship with a derrick over the origin.
+        Ship = "ship",
+        /// A semi-submersible platform.
+        Platform = "platform",
+        /// A buoy.
+        Buoy = "buoy",
+        /// A vehicle on the seabed.
+        Crawler = "crawler",
     }
 }
 

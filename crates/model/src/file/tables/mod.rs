@@ -14,7 +14,7 @@ mod study;
 pub(super) use analysis::{
     DynamicsTable, FormulationChoice, IntegratorChoice, ModesTable, StaticsTable,
 };
-pub(super) use body::{AnchorTable, BodyTable, VesselTable};
+pub(super) use body::{AnchorTable, BodyTable, ShapeChoice, VesselTable};
 pub(super) use environment::{
     CurrentPointTable, CurrentTable, EnvironmentTable, FactorTable, SeabedTable,
 };
