@@ -113,6 +113,20 @@ impl StoredStudy {
     }
 }
 
+/// The first `rows` values of the array with one axis that lies in `directory`; fewer where it is
+/// shorter. Its chunks are small and many, so that a run can write them as it goes: whoever wants
+/// the whole array would have to ask for each of them.
+pub fn read_vector(directory: &Path, rows: usize) -> Result<Vec<f64>, StoreError> {
+    let array = Array::open(directory.to_path_buf())?;
+    if array.shape().columns.is_some() {
+        return Err(StoreError::Damaged {
+            path: directory.to_path_buf(),
+            what: "the array has two axes where one is expected".to_owned(),
+        });
+    }
+    array.read_rows(0, rows)
+}
+
 impl StoredCase {
     /// How far the case has come.
     pub fn progress(&self) -> Result<CaseProgress, StoreError> {

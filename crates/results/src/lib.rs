@@ -38,7 +38,7 @@ mod verification;
 mod zarr;
 
 pub use description::{
-    ArrayPlace, CaseDescription, CaseProgress, ChannelPlace, LinePlace, QuantityPlace,
+    ArrayPlace, CaseDescription, CaseProgress, ChannelPlace, LinePlace, QuantityPlace, read_vector,
 };
 pub use details::{Setting, SettingValue};
 pub use envelope::Envelope;

@@ -84,6 +84,16 @@ impl Response {
         }
     }
 
+    /// Numbers as they are in memory.
+    pub(crate) fn numbers(bytes: Vec<u8>) -> Self {
+        Response {
+            status: Status::Ok,
+            content_type: "application/octet-stream",
+            body: Body::Bytes(bytes),
+            location: None,
+        }
+    }
+
     /// A file of the store.
     pub(crate) fn file(file: File, length: u64) -> Self {
         Response {

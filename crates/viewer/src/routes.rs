@@ -4,13 +4,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use catenix_results::{CaseProgress, StoreError, StoredStudy};
+use catenix_results::{CaseProgress, StoreError, StoredStudy, read_vector};
 use serde::Serialize;
 
 use crate::assets;
 use crate::request::Request;
 use crate::response::{Response, Status};
 use crate::{ViewerError, token};
+
+/// Most values in one answer of `api/vectors`: 32 MB.
+const MOST_VECTOR_VALUES: usize = 1 << 22;
 
 /// Everything that can be asked for: the page, descriptions of the store, and its files.
 #[derive(Debug)]
@@ -84,6 +87,7 @@ impl Site {
             "api/case" => self.case(query),
             "api/node" => self.node(query),
             "api/envelope" => self.envelope(query),
+            "api/vectors" => self.vectors(query),
             _ => return assets::asset(place).unwrap_or_else(not_found),
         };
         result.unwrap_or_else(|error| {
@@ -142,22 +146,48 @@ impl Site {
         Ok(Response::json(&case.envelope(&line, quantity)?))
     }
 
-    /// A file of the store: every part of its path is a plain name, and what it leads to is a
-    /// regular file below the store, symbolic links resolved.
-    fn store_file(&self, path: &str) -> Response {
+    /// Whole arrays with one axis, one after the other as little-endian doubles: `array=ROWS:PATH`,
+    /// once for each, with the rows that the page knows to be written.
+    fn vectors(&self, query: &str) -> Result<Response, StoreError> {
+        let mut bytes = Vec::new();
+        for wanted in query.split('&').filter_map(|p| p.strip_prefix("array=")) {
+            let wanted = wanted.split_once(':').and_then(|(rows, path)| {
+                let rows = rows.parse::<usize>().ok()?;
+                Some((rows, self.inside(path)?))
+            });
+            let Some((rows, directory)) = wanted else {
+                return Ok(not_found());
+            };
+            let room = MOST_VECTOR_VALUES - bytes.len() / size_of::<f64>();
+            if rows > room {
+                let message = "these arrays are longer than one answer may be";
+                let code = "viewer::too_large";
+                return Ok(Response::error(Status::TooLarge, code, message));
+            }
+            // An answer has the length that was asked for, or the page could not cut it apart.
+            let mut values = read_vector(&directory, rows)?;
+            values.resize(rows, f64::NAN);
+            bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+        }
+        Ok(Response::numbers(bytes))
+    }
+
+    /// What a path below the store leads to: every part of it is a plain name, and with symbolic
+    /// links resolved it is still below the store.
+    fn inside(&self, path: &str) -> Option<PathBuf> {
         let mut file = self.store.clone();
         for part in path.split('/') {
-            match decode(part) {
-                Some(name) if is_plain(&name) => file.push(name),
-                _ => return not_found(),
-            }
+            file.push(decode(part).filter(|name| is_plain(name))?);
         }
-        let Ok(file) = fs::canonicalize(file) else {
+        let file = fs::canonicalize(file).ok()?;
+        file.starts_with(&self.store).then_some(file)
+    }
+
+    /// A regular file of the store.
+    fn store_file(&self, path: &str) -> Response {
+        let Some(file) = self.inside(path) else {
             return not_found();
         };
-        if !file.starts_with(&self.store) {
-            return not_found();
-        }
         let opened = fs::File::open(&file).and_then(|opened| {
             let metadata = opened.metadata()?;
             Ok((opened, metadata))

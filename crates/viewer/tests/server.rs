@@ -49,6 +49,10 @@ impl Bench {
     }
 
     fn raw(&self, request: &str) -> String {
+        String::from_utf8_lossy(&self.raw_bytes(request)).into_owned()
+    }
+
+    fn raw_bytes(&self, request: &str) -> Vec<u8> {
         let mut stream = TcpStream::connect(&self.host).unwrap();
         stream
             .set_read_timeout(Some(Duration::from_secs(20)))
@@ -57,7 +61,7 @@ impl Bench {
         let mut answer = Vec::new();
         // A server that refuses may close before everything was sent.
         let _ = stream.read_to_end(&mut answer);
-        String::from_utf8_lossy(&answer).into_owned()
+        answer
     }
 
     fn get(&self, target: &str) -> (u16, String) {
@@ -68,10 +72,11 @@ impl Bench {
         let request = format!("GET {target} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n");
         let answer = self.raw(&request);
         let (head, body) = answer.split_once("\r\n\r\n").unwrap_or((&answer, ""));
-        (
-            head.split(' ').nth(1).unwrap().parse().unwrap(),
-            body.to_owned(),
-        )
+        let status = head
+            .split(' ')
+            .nth(1)
+            .map_or(0, |code| code.parse().unwrap());
+        (status, body.to_owned())
     }
 
     /// A path below the token.
@@ -145,6 +150,72 @@ fn numbers_are_those_of_the_store() {
         (mean.parse::<f64>().unwrap() - 3016.0).abs() < 1e-9,
         "{mean}"
     );
+}
+
+#[test]
+fn whole_vectors_come_in_one_answer() {
+    let bench = Bench::new();
+    let doubles = |query: &str| -> Vec<f64> {
+        let target = format!("/{}/api/vectors?{query}", bench.token);
+        let request =
+            format!("GET {target} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+        let answer = bench.raw_bytes(&request);
+        let head = answer.windows(4).position(|w| w == b"\r\n\r\n").unwrap();
+        assert!(answer.starts_with(b"HTTP/1.1 200"));
+        answer[head + 4..]
+            .chunks_exact(8)
+            .map(|bytes| f64::from_le_bytes(bytes.try_into().unwrap()))
+            .collect()
+    };
+    // Rows beyond the end of an array are missing, so that the next array begins where expected.
+    let read = doubles(
+        "array=3:cases/a/lines/pipe/field_time&array=300:cases/a/lines/pipe/arc_length&array=2:cases/b/time",
+    );
+    assert_eq!(read[..5], [0.0, 1.0, 2.0, 0.0, 10.0]);
+    assert_eq!(read.len(), 305);
+    assert!(read[302].is_nan() && read[303] == 0.0);
+    assert!(doubles("").is_empty());
+
+    for (query, expected) in [
+        ("array=1:cases/a/lines/pipe/missing", 404),
+        ("array=1:../secret", 404),
+        ("array=1:cases/%2e%2e/%2e%2e/secret", 404),
+        ("array=x:cases/a/time", 404),
+        ("array=-1:cases/a/time", 404),
+        ("array=cases/a/time", 404),
+        ("array=1:", 404),
+        ("array=1:cases/a", 500),
+        // Fields have two axes.
+        ("array=1:cases/a/lines/pipe/x", 500),
+        ("array=99999999:cases/a/time", 413),
+        ("array=18446744073709551615:cases/a/time", 413),
+        ("array=4194000:cases/a/time&array=4194000:cases/b/time", 413),
+    ] {
+        let (status, body) = bench.own(&format!("api/vectors?{query}"));
+        assert_eq!(status, expected, "{query}: {body}");
+    }
+}
+
+#[test]
+fn many_connections_and_slow_ones_do_not_stop_it() {
+    let bench = Bench::new();
+    // Half a request each: the server waits for the rest, but not for ever, and not alone.
+    let slow: Vec<TcpStream> = (0..60)
+        .map(|_| {
+            let mut stream = TcpStream::connect(&bench.host).unwrap();
+            stream.write_all(b"GET / HTTP/1.1\r\nHost").unwrap();
+            stream
+        })
+        .collect();
+    assert_eq!(bench.own("api/study").0, 200);
+    let more: Vec<TcpStream> = (0..40)
+        .filter_map(|_| TcpStream::connect(&bench.host).ok())
+        .collect();
+    drop((slow, more));
+    let begin = std::time::Instant::now();
+    while bench.own("api/study").0 != 200 {
+        assert!(begin.elapsed() < Duration::from_secs(20), "it comes back");
+    }
 }
 
 #[test]
