@@ -75,16 +75,28 @@ export async function getJson<T>(
 
 /** A file of the store; null when it does not exist. */
 export async function getStoreFile(path: string): Promise<ArrayBuffer | null> {
-  const encoded = path.split("/").map(encodeURIComponent).join("/");
-  let response: Response;
   try {
-    response = await request(`store/${encoded}`, PATIENCE_MS);
+    return await getBytes(`store/${encodePath(path)}`);
   } catch (error) {
     if (error instanceof ServerError && error.status === 404) {
       return null;
     }
     throw error;
   }
+}
+
+/** Arrays with one axis, one after the other as doubles; `wanted`: rows and path of each. */
+export function getVectors(wanted: [number, string][]): Promise<ArrayBuffer> {
+  const parts = wanted.map(([rows, path]) => `array=${rows}:${encodePath(path)}`);
+  return getBytes(`api/vectors?${parts.join("&")}`);
+}
+
+function encodePath(path: string): string {
+  return path.split("/").map(encodeURIComponent).join("/");
+}
+
+async function getBytes(path: string): Promise<ArrayBuffer> {
+  const response = await request(path, PATIENCE_MS);
   try {
     return await response.arrayBuffer();
   } catch {

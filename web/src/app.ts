@@ -17,8 +17,8 @@ import { bindKeys, bindScene } from "./ui/controls";
 import { byId, fill } from "./ui/dom";
 import { Exports, fileName, timeName } from "./ui/exports";
 import { Graphs } from "./ui/graphs";
-import { bindTabs, Panels } from "./ui/panels";
-import { report, tellConnection, tellEmpty, tellStudy } from "./ui/status";
+import { bindTabs, fillQuantities, Panels } from "./ui/panels";
+import { describeScene, report, tellConnection, tellEmpty, tellStudy } from "./ui/status";
 import { Values } from "./ui/values";
 
 /** Elapsed time between two questions about the run [ms]: while it goes on, and otherwise. */
@@ -48,6 +48,8 @@ export class App {
   private exporting = false;
   private dirty = true;
   private forced = true;
+  /** Whether something else than data has changed since the scene was drawn. */
+  private touched = true;
   private ready = true;
   private lastTick = 0;
   private decimals = 1;
@@ -100,6 +102,12 @@ export class App {
 
   /** Something has changed: draw soon. */
   private wake(forced = false): void {
+    this.touched = true;
+    this.dataCame(forced);
+  }
+
+  /** Data that was asked for is here: draw soon, if it is all there now. */
+  private dataCame(forced: boolean): void {
     this.dirty = true;
     this.forced ||= forced;
     this.schedule();
@@ -241,13 +249,16 @@ export class App {
       playback.tail = false;
     }
     label.hidden = !running;
-    this.fillQuantities(cases);
+    const chosen = fillQuantities(cases, this.options.get().quantity);
+    if (chosen) {
+      this.options.set({ quantity: chosen });
+    }
     if (this.study) {
       this.panels.refresh(this.study, cases);
     }
-    this.graphs.refresh(false);
+    this.graphs.refresh();
     this.exports.refresh();
-    tellEmpty(cases);
+    tellEmpty(cases, this.study);
     this.wake(true);
   }
 
@@ -257,22 +268,6 @@ export class App {
       (best, data) => (!best || data.endTime > best.endTime ? data : best),
       undefined,
     );
-  }
-
-  private fillQuantities(cases: CaseData[]): void {
-    const { quantity } = this.options.get();
-    const names = [...new Set(cases.flatMap((data) => data.description.lines.flatMap((line) => line.quantities.map((q) => q.name))))];
-    const rank = (name: string) => (["x", "y", "z"].includes(name) ? 1 : 0);
-    names.sort((a, b) => rank(a) - rank(b));
-    if (names.length === 0) {
-      return;
-    }
-    const entries = names.map((name): [string, string] => {
-      return [name, name.length === 1 ? `Position ${name}` : title(name)];
-    });
-    const chosen = names.includes(quantity) ? quantity : names[0];
-    fill(byId("quantity"), [{ label: "", entries }], chosen);
-    this.options.set({ quantity: chosen });
   }
 
   private unitOf(quantity: string): string {
@@ -332,8 +327,12 @@ export class App {
         data.prefetch(time + 1.5 * this.playback.speed, options.quantity);
       }
     }
-    this.stage.draw(this.stageState(), options);
     byId("loading").hidden = this.ready;
+    // While data is on its way, each piece that comes is no reason to draw the same again.
+    if (this.ready || this.touched) {
+      this.touched = false;
+      this.stage.draw(this.stageState(), options);
+    }
     this.clock();
     this.graphs.refresh(this.ready);
     this.graphs.moment(time, this.decimals, forced && this.ready);
@@ -365,12 +364,7 @@ export class App {
     scene.dataset.time = String(time);
     scene.dataset.ready = String(this.ready);
     if (!this.playback.playing) {
-      const { cases, quantity } = this.options.get();
-      const names = this.shown().flatMap((data) => data.description.lines.map((line) => line.name));
-      const label = `Case ${cases.join(", ")} at ${seconds(time, this.decimals)} seconds: lines ${[...new Set(names)].join(", ")}, coloured by ${title(quantity).toLowerCase()}`;
-      if (byId("canvas").getAttribute("aria-label") !== label) {
-        byId("canvas").setAttribute("aria-label", label);
-      }
+      describeScene(this.shown(), this.options.get().quantity, seconds(time, this.decimals));
     }
   }
 
@@ -434,7 +428,7 @@ export class App {
 
   private bind(): void {
     const { options, playback } = this;
-    this.cache.onChange = () => this.wake(true);
+    this.cache.onChange = () => this.dataCame(true);
     this.cache.onDamage = (path, first, last) =>
       banner(`damage ${path}`, `Part of the store is damaged and shown as missing: ${path}, stored rows ${first} to ${last}. Run the model again.`, true);
     onConnection((connected) => {
@@ -471,6 +465,7 @@ export class App {
       button.addEventListener("click", () => this.look(button.dataset.preset as Preset));
     }
     byId("fit").addEventListener("click", () => this.fit());
+    byId("near").addEventListener("click", () => this.near());
     const dialog = byId<HTMLDialogElement>("help-dialog");
     byId("help").addEventListener("click", () => dialog.showModal());
     const themes = ["auto", "light", "dark"] as const;
@@ -501,6 +496,7 @@ export class App {
       },
       look: (preset: Preset) => this.look(preset),
       fit: () => this.fit(),
+      near: () => this.near(),
       nextCase: () => {
         const names = this.study?.cases.map(({ name }) => name) ?? [];
         const at = names.indexOf(options.get().cases[0] ?? "");
@@ -577,13 +573,21 @@ export class App {
     this.wake(true);
   }
 
+  private near(): void {
+    const { selection } = this.options.get();
+    if (!selection || !this.stage.near(selection)) {
+      say("Nothing is selected");
+    }
+    this.wake(true);
+  }
+
   private applyTheme(): void {
     const { theme } = this.options.get();
     const dark = theme === "dark" || (theme === "auto" && window.matchMedia("(prefers-color-scheme: dark)").matches);
     document.documentElement.toggleAttribute("data-dark", dark);
-    const words = { auto: ["Auto", "as the system"], light: ["Light", "light"], dark: ["Dark", "dark"] }[theme];
-    byId("theme").textContent = words[0];
-    byId("theme").setAttribute("aria-label", `Theme: ${words[1]}`);
+    const word = title(theme);
+    byId("theme").textContent = word;
+    byId("theme").setAttribute("aria-label", `${word} theme: change between automatic, light and dark`);
     this.stage.setTheme(dark);
     if (this.framed) {
       this.setCases();

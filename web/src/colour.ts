@@ -18,10 +18,29 @@ const POINTS: Record<MapName, string[]> = {
   grey: ["1c1c1c", "f0f0f0"],
 };
 
-/** Colours of the load cases (Okabe and Ito, in an order that works on both backgrounds). */
-export const CASE_COLOURS = [
-  "#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9", "#8c6bb1", "#b8a900",
+// Colours of the load cases (Okabe and Ito, M. Okabe and K. Ito, Color Universal Design, 2008, in an
+// order that keeps neighbours apart; darker on light ground and lighter on dark ground, so that each
+// has a contrast of 3 to its ground).
+const ON_LIGHT = [
+  "#0072b2", "#b87800", "#008c66", "#b9568a", "#c04f00", "#2b87bb", "#7d5aa6", "#867b00",
 ];
+const ON_DARK = [
+  "#5fb2ea", "#f0b13c", "#2fc49a", "#e39ac4", "#f0813c", "#9bd4f5", "#b79bdb", "#d3c53a",
+];
+/** Dashes of their curves [px]: nothing is told apart by colour alone. */
+const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 2], [12, 5], [2, 2, 6, 2], [1, 4]];
+
+/** The colour of a load case by its place among the shown ones. */
+export function caseColour(index: number): string {
+  const dark = document.documentElement.hasAttribute("data-dark");
+  const colours = dark ? ON_DARK : ON_LIGHT;
+  return colours[Math.max(index, 0) % colours.length];
+}
+
+/** The dashes of a load case's curves. */
+export function caseDash(index: number): number[] {
+  return DASHES[Math.max(index, 0) % DASHES.length];
+}
 
 /** 256 colours of a map, RGBA bytes. */
 export function mapBytes(name: MapName): Uint8Array {
@@ -57,6 +76,10 @@ export interface Palette {
   outline: string;
   current: string;
   hull: string;
+  topside: string;
+  deck: string;
+  house: string;
+  derrick: string;
   body: string;
   float: string;
   weight: string;
@@ -74,7 +97,11 @@ export const LIGHT: Palette = {
   seabedGrid: "#6f5a36",
   outline: "#1b2d3a",
   current: "#00655e",
-  hull: "#b3402e",
+  hull: "#a93226",
+  topside: "#27496b",
+  deck: "#6f8f80",
+  house: "#f4f1ea",
+  derrick: "#d98a1f",
   body: "#e8a33d",
   float: "#e8702a",
   weight: "#4a5560",
@@ -92,7 +119,11 @@ export const DARK: Palette = {
   seabedGrid: "#d3bb8c",
   outline: "#dce8f0",
   current: "#5fd6c8",
-  hull: "#d8604c",
+  hull: "#cf5646",
+  topside: "#5b86b0",
+  deck: "#7f9c8f",
+  house: "#eef1f2",
+  derrick: "#f0a540",
   body: "#f0b350",
   float: "#ff8a45",
   weight: "#9aa7b2",

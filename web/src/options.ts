@@ -43,7 +43,7 @@ export const DEFAULTS: Options = {
   reversed: false,
   colourBy: "result",
   fixedRange: null,
-  lineWidth: 4,
+  lineWidth: 5,
   exaggeration: 1,
   stretch: 1,
   follow: "",

@@ -1,6 +1,8 @@
 // For everybody: keyboard, screen reader, phone, light and dark.
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { closeBrowser, compute, here, openPage, ready, start } from "./bench.mjs";
@@ -20,6 +22,29 @@ async function open(options) {
   await ready(page);
   return page;
 }
+
+/** What axe-core has against the page as it is, one line per fault. */
+async function faults(page) {
+  const source = createRequire(import.meta.url).resolve("axe-core/axe.min.js");
+  // The page's own policy forbids foreign scripts, so it is run beside the page's.
+  await page.evaluate(readFileSync(source, "utf8"));
+  const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
+  return violations.flatMap(({ id, help, nodes }) => nodes.map((node) => `${id}: ${help}: ${node.html.slice(0, 160)}`));
+}
+
+test("axe-core finds nothing, on any tab, in both themes, on a desk and a phone", async () => {
+  for (const [colorScheme, width, height] of [["light", 1280, 720], ["dark", 1280, 720], ["light", 390, 844]]) {
+    const page = await open({ colorScheme, viewport: { width, height } });
+    for (const tab of ["graphs", "cases", "values", "display", "export"]) {
+      await page.click(`#tab-${tab}`);
+      await ready(page);
+      assert.deepEqual(await faults(page), [], `${tab}, ${colorScheme}, ${width} x ${height}`);
+    }
+    await page.click("#help");
+    assert.deepEqual(await faults(page), [], `help, ${colorScheme}, ${width} x ${height}`);
+    await page.context().close();
+  }
+});
 
 test("every control has a name, and every place can be reached with the keyboard", async () => {
   const page = await open();

@@ -60,12 +60,9 @@ let browser = null;
 export async function openPage(url, options = {}) {
   browser ??= await chromium.launch({
     executablePath: process.env.CATENIX_CHROMIUM ?? "/usr/bin/chromium",
-    args: [
-      "--no-sandbox",
-      "--use-angle=swiftshader",
-      "--enable-unsafe-swiftshader",
-      "--ignore-gpu-blocklist",
-    ],
+    // As a browser draws on a machine without a graphics card: three dimensions by SwiftShader,
+    // everything else by itself.
+    args: ["--no-sandbox", "--enable-unsafe-swiftshader"],
   });
   const context = await browser.newContext({
     viewport: { width: 1000, height: 640 },
@@ -74,6 +71,15 @@ export async function openPage(url, options = {}) {
     ...options,
   });
   context.setDefaultTimeout(PATIENCE);
+  const { CATENIX_ASSETS: assets } = process.env;
+  if (assets) {
+    // A page that was just built, without building the program around it again.
+    const own = (url) => /^\/\w+\/(app\.js|app\.css|index\.html)?$/.test(url.pathname);
+    await context.route(own, (route, request) => {
+      const name = new URL(request.url()).pathname.split("/").pop() || "index.html";
+      return route.fulfill({ path: join(assets, name) });
+    });
+  }
   const page = await context.newPage();
   page.faults = [];
   page.on("pageerror", (error) => page.faults.push(error.message));

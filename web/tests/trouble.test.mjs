@@ -85,6 +85,49 @@ test("a damaged chunk is told and shown as missing", async () => {
   await server.stop();
 });
 
+test("damaged times and shapes are told, and the rest is shown", async () => {
+  const spoiled = copy("shapes");
+  const chunk = join(spoiled, "results.zarr/cases/calm/lines/pipe/static_x/c/0");
+  const bytes = readFileSync(chunk);
+  bytes[5] ^= 1;
+  writeFileSync(chunk, bytes);
+  const server = await start("view", spoiled);
+  const page = await openPage(server.url);
+  await ready(page);
+  await bannerOf(page, "damage cases/calm/lines/pipe/static_x");
+  await scrub(page, 4);
+  assert.equal(await shownValue(page, "calm"), array(results, "cases/calm/lines/pipe/effective_tension").at(4, 0));
+  assert.deepEqual(page.faults, []);
+  await server.stop();
+});
+
+test("a root that becomes newer, damaged or empty is told, and the page recovers", async () => {
+  const changed = copy("root");
+  const root = join(changed, "results.zarr/zarr.json");
+  const text = readFileSync(root, "utf8");
+  const server = await start("view", changed);
+  const page = await openPage(server.url);
+  await ready(page);
+  const newer = text.replace('"catenix_store_format":1', '"catenix_store_format":7');
+  assert.notEqual(newer, text);
+  for (const [content, words] of [[newer, /store format 7/], [text.slice(0, 200), /damaged/]]) {
+    writeFileSync(root, content);
+    await page.waitForFunction((wanted) => new RegExp(wanted).test(document.querySelector('.banner[data-key="study"]')?.textContent), words.source);
+  }
+  const empty = text.replace('"case_names":["calm","rough"]', '"case_names":[]');
+  assert.notEqual(empty, text);
+  writeFileSync(root, empty);
+  await page.waitForFunction(() => /no load case/.test(document.querySelector("#empty:not([hidden])")?.textContent));
+  await noBanner(page, "study");
+  writeFileSync(root, text);
+  await page.waitForSelector("#empty", { state: "hidden" });
+  await ready(page);
+  await scrub(page, 6);
+  assert.equal(await shownValue(page, "calm"), array(results, "cases/calm/lines/pipe/effective_tension").at(6, 0));
+  assert.deepEqual(page.faults, []);
+  await server.stop();
+});
+
 test("a case that has not begun, and results that vanish and come again", async () => {
   const changed = copy("changed");
   const path = join(changed, "results.zarr/cases/calm");

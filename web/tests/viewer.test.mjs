@@ -145,6 +145,52 @@ test("a click picks a line at its node, and a body", async () => {
   assert.deepEqual(page.faults, []);
 });
 
+test("the wheel zooms towards the pointer, and what is selected can be gone near to", async () => {
+  const page = await open();
+  const place = (what) => page.evaluate((selection) => window.catenix.locate(selection), what);
+  const box = await (await page.$("#scene")).boundingBox();
+  const node = { kind: "line", name: "pipe", node: 3 };
+  const [other, before] = [await place({ ...node, node: 12 }), await place(node)];
+  await page.mouse.move(box.x + before.x, box.y + before.y);
+  await page.mouse.wheel(0, -400);
+  await ready(page);
+  const [farther, after] = [await place({ ...node, node: 12 }), await place(node)];
+  const length = (a, b) => Math.hypot(a.x - b.x, a.y - b.y);
+  assert.ok(length(farther, after) > 1.4 * length(other, before), "it is larger");
+  // In perspective only what is as far as the middle of the view stays exactly in its place.
+  assert.ok(length(after, before) < 30, `${length(after, before)} px away`);
+
+  await page.selectOption("#object", "vessel:ship");
+  await page.click("#near");
+  await ready(page);
+  const ship = await place({ kind: "vessel", name: "ship" });
+  assert.ok(Math.abs(ship.x - box.width / 2) < 2 && Math.abs(ship.y - box.height / 2) < 2, "in the middle");
+  await page.click("#fit");
+  await ready(page);
+  const fitted = await place({ ...node, node: 12 });
+  assert.ok(length(fitted, other) < 2, "the whole system again");
+  assert.deepEqual(page.faults, []);
+});
+
+test("vessels have the shape and length of the model", async () => {
+  const page = await open();
+  const { vessels } = await page.evaluate(async () => (await (await fetch("api/case?case=calm")).json()).scene);
+  assert.deepEqual(vessels.map(({ name, shape, length_m }) => [name, shape, length_m]), [["ship", "platform", 60], ["tower", "anchor", null]]);
+  assert.deepEqual(page.faults, []);
+});
+
+test("whole arrays come in one answer, not chunk by chunk", async () => {
+  const page = await openPage(server.url);
+  const asked = [];
+  page.on("request", (request) => asked.push(new URL(request.url()).pathname));
+  await page.reload();
+  await ready(page);
+  assert.equal(asked.filter((path) => path.endsWith("api/vectors")).length, 1);
+  for (const name of ["field_time", "arc_length", "static_x", "time/c"]) {
+    assert.deepEqual(asked.filter((path) => path.includes(name)), [], name);
+  }
+});
+
 test("cases stand side by side and lie over each other", async () => {
   const page = await open();
   await page.click("#tab-cases");
@@ -242,5 +288,31 @@ test("pictures and videos are what is on the screen", async () => {
   const webm = readFileSync(await film.path());
   assert.equal(webm.readUInt32BE(0), 0x1a45dfa3, "a Matroska file");
   assert.ok(webm.length > 5000, `${webm.length} bytes`);
+  const played = await page.evaluate(async (data) => {
+    const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
+    const video = document.createElement("video");
+    const event = (name) => new Promise((resolve, reject) => {
+      video.addEventListener(name, resolve, { once: true });
+      video.addEventListener("error", () => reject(new Error(video.error.message)), { once: true });
+    });
+    video.muted = true;
+    video.src = URL.createObjectURL(new Blob([bytes], { type: "video/webm" }));
+    await Promise.all([event("ended"), video.play()]);
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [video.videoWidth, video.videoHeight];
+    const context = canvas.getContext("2d");
+    context.drawImage(video, 0, 0);
+    const pixels = context.getImageData(0, 0, canvas.width, canvas.height).data;
+    const scene = document.querySelector("#scene");
+    return {
+      size: [canvas.width - scene.clientWidth, canvas.height - scene.clientHeight],
+      colours: new Set(new Uint32Array(pixels.buffer)).size,
+      length: video.currentTime,
+    };
+  }, webm.toString("base64"));
+  assert.ok(played.size.every((difference) => Math.abs(difference) <= 1), "the film has the scene's size");
+  assert.ok(played.colours > 500, `${played.colours} colours in its last picture`);
+  // 13 frames at 12 a second; a busy machine records more slowly.
+  assert.ok(played.length > 0.8, `it lasts ${played.length} s`);
   assert.deepEqual(page.faults, []);
 });

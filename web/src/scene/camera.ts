@@ -85,13 +85,26 @@ export class OrbitCamera {
     this.target.addScaledVector(right, -dx * scale).addScaledVector(up, dy * scale);
   }
 
-  zoom(factor: number): void {
-    this.distance = Math.min(Math.max(this.distance * factor, 0.2), 2e6);
+  /** Zooms about a point of the picture, `dx` and `dy` from its middle [px]. */
+  zoom(factor: number, dx = 0, dy = 0, height = 1): void {
+    const before = this.distance;
+    this.distance = Math.min(Math.max(before * factor, 0.2), 2e6);
+    const left = 1 - this.distance / before;
+    const scale = ((2 * before * Math.tan(OPENING / 2)) / height) * left;
+    const right = this.right();
+    const up = new Vector3().crossVectors(this.direction(), right);
+    this.target.addScaledVector(right, dx * scale).addScaledVector(up, -dy * scale);
+  }
+
+  /** Looks at a place so that `span` fills a good part of the picture [m]. */
+  approach(place: Vector3, span: number): void {
+    this.target.copy(place);
+    this.distance = (0.9 * span) / Math.tan(OPENING / 2);
   }
 
   look(preset: Preset): void {
     if (preset === "3d") {
-      [this.azimuth, this.elevation] = [-1.05, 0.22];
+      [this.azimuth, this.elevation] = [-1.05, 0.28];
     } else if (preset === "side") {
       [this.azimuth, this.elevation] = [-Math.PI / 2, 0];
     } else if (preset === "front") {

@@ -14,6 +14,7 @@ import {
   vesselSymbol,
 } from "./symbols";
 import type { Bounds } from "./camera";
+import type { Project, Rect } from "./overlay";
 import type { SceneVessel } from "../store/types";
 
 /** Something with a name and a place. */
@@ -28,6 +29,9 @@ export interface Hit {
   /** From the pointer [px]. */
   distance: number;
 }
+
+/** Pieces of a line whose places are kept clear of names. */
+const STRETCHES = 40;
 
 export class CaseView {
   readonly group = new Group();
@@ -189,6 +193,53 @@ export class CaseView {
     return new Vector3(nodes[k], nodes[k + 1], nodes[k + 2]);
   }
 
+  /** How much of the scene belongs to the selected thing: to go near it [m]. */
+  spanOf(selection: Selection): number {
+    if (selection.kind !== "line") {
+      return 1.1 * (this.objects.get(selection.name)?.size ?? 10);
+    }
+    const place = this.data.line(selection.name);
+    const arcs = this.data.arcLengths.get(selection.name);
+    return place && arcs ? 0.04 * arcs[arcs.length - 1] : 10;
+  }
+
+  /** Length of a vessel or body as it is drawn [m]. */
+  shownSize(name: string): number {
+    const symbol = this.objects.get(name);
+    return symbol ? symbol.size * symbol.object.scale.x : 0;
+  }
+
+  /** Where something is drawn, as rectangles of the picture, for names to keep clear of. */
+  footprint(project: Project, pixelAt: (place: Vector3) => number): Rect[] {
+    const covered: Rect[] = [];
+    const cover = (at: { x: number; y: number } | null, half: number) => {
+      if (at) {
+        covered.push({ x: at.x - half, y: at.y - half, width: 2 * half, height: 2 * half });
+      }
+    };
+    const symbols = [...this.objects.values(), ...this.lumps.map((lump) => lump.symbol)];
+    for (const { object, size, least } of symbols) {
+      cover(project(object.position), 0.3 * Math.max(least, size / pixelAt(object.position)));
+    }
+    const place = new Vector3();
+    for (const { nodes } of this.lines) {
+      const count = nodes.length / 4;
+      let before: { x: number; y: number } | null = null;
+      for (let k = 0; k <= STRETCHES; k++) {
+        const node = Math.round((k * (count - 1)) / STRETCHES);
+        place.fromArray(nodes, 4 * node);
+        const at = Number.isFinite(place.x) ? project(place) : null;
+        if (at && before) {
+          const [x, y] = [Math.min(at.x, before.x), Math.min(at.y, before.y)];
+          const [width, height] = [Math.abs(at.x - before.x), Math.abs(at.y - before.y)];
+          covered.push({ x: x - 3, y: y - 3, width: width + 6, height: height + 6 });
+        }
+        before = at;
+      }
+    }
+    return covered;
+  }
+
   private pointAt(line: number, arc: number): Vector3 {
     const arcs = this.data.arcLengths.get(this.data.description.lines[line].name);
     const nodes = this.lines[line]?.nodes;
@@ -215,7 +266,8 @@ export class CaseView {
     const matrix = new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
     for (const [index, line] of this.lines.entries()) {
       const { name } = this.data.description.lines[index];
-      const selected = selection?.kind === "line" && selection.name === name;
+      // Where colours tell the cases apart, the mark at the node is enough.
+      const selected = !look.plain && selection?.kind === "line" && selection.name === name;
       line.show(look, selected, pixelRatio, matrix);
     }
     const symbols = [...this.objects.values(), ...this.lumps.map((lump) => lump.symbol), this.mark];
@@ -274,15 +326,19 @@ export class CaseView {
   }
 }
 
-/** Length of a vessel's symbol [m], for a system of this size. */
-function vesselLength(data: CaseData, vessel: SceneVessel, size: number): number {
+/** Length of a vessel [m]; where the model gives none, one that suits a system of this size. */
+export function vesselLength(data: CaseData, vessel: SceneVessel, size: number): number {
+  if (vessel.length_m) {
+    return vessel.length_m;
+  }
   const kind = vesselKind(vessel, data.scene?.water_depth_m ?? 0);
   const ends = (data.scene?.lines ?? []).flatMap((line) => line.ends);
   const points = ends.flatMap((end) => (end?.to === vessel.name ? [end.point_m] : []));
-  // A ship reaches a little beyond the points where lines are fastened to it.
+  // It reaches a little beyond the points where lines are fastened to it.
   const reach = Math.max(0, ...points.map(([x, y]) => Math.hypot(x, y)));
-  const share = { ship: 0.085, buoy: 0.025, crawler: 0.025, anchor: 0.012 }[kind];
-  return Math.max(kind === "ship" ? 2.4 * reach : 0, Math.min(share * size, 120), 0.5);
+  const share = { ship: 0.11, platform: 0.08, buoy: 0.02, crawler: 0.02, anchor: 0.01 }[kind];
+  const most = { ship: 150, platform: 90, buoy: 12, crawler: 15, anchor: 8 }[kind];
+  return Math.max(kind === "anchor" ? 0 : 2.4 * reach, Math.min(share * size, most), 0.5);
 }
 
 /** The box around the static shapes and the vessels, sea surface included where it is near. */

@@ -236,7 +236,7 @@ export class LineMesh {
     edge.plain.value.copy(selected ? look.mark : look.outline);
     edge.mapped.value = 0;
     edge.shaded.value = 0;
-    edge.extra.value = (selected ? 1.8 : 0.9) * pixelRatio;
+    edge.extra.value = (selected ? 1.5 : 0.9) * pixelRatio;
     edge.back.value = 1e-5;
   }
 

@@ -14,11 +14,49 @@ export interface Rect {
 
 export type Project = (place: Vector3) => { x: number; y: number } | null;
 
+/** A thing that has a name, in the picture. */
+export interface NamedPlace {
+  /** Of all names in all views. */
+  key: string;
+  name: string;
+  at: { x: number; y: number };
+  size: number;
+  weight: number;
+  /** From the middle of the thing to the beginning of its name, sideways and upwards [px]. */
+  gap: { x: number; y: number };
+  /** Share of the name that may cover what is drawn; a name that would cover more is left out. */
+  cover: number;
+}
+
+/** Where a name may stand about its thing, in half widths and heights of the name. */
+interface Spot {
+  x: number;
+  y: number;
+}
+
+const SPOTS: Spot[] = [
+  { x: 1, y: 0 },
+  { x: -1, y: 0 },
+  { x: 1, y: -0.9 },
+  { x: -1, y: -0.9 },
+  { x: 1, y: 0.9 },
+  { x: -1, y: 0.9 },
+  { x: 0, y: -1 },
+  { x: 0, y: 1 },
+  { x: 1, y: -2 },
+  { x: -1, y: -2 },
+  { x: 1, y: 2 },
+  { x: -1, y: 2 },
+  { x: 0, y: 2 },
+];
+
 const FONT = '"Noto Sans", system-ui, -apple-system, "Segoe UI", Roboto, sans-serif';
 
 export class Overlay {
   private taken: Rect[] = [];
   private widths = new Map<string, number>();
+  /** Where each name stood last. */
+  private spots = new Map<string, number>();
 
   constructor(
     private context: CanvasRenderingContext2D,
@@ -75,12 +113,7 @@ export class Overlay {
     const width = this.measure(text);
     const left = align === "left" ? x : align === "right" ? x - width : x - width / 2;
     const rect = { x: left - 2, y: y - size * 0.62, width: width + 4, height: size * 1.24 };
-    const inside =
-      rect.x >= within.x &&
-      rect.x + rect.width <= within.x + within.width &&
-      rect.y >= within.y &&
-      rect.y + rect.height <= within.y + within.height;
-    if (!options.force && (!inside || !this.free(rect))) {
+    if (!options.force && (!isWithin(rect, within) || !this.free(rect))) {
       return false;
     }
     this.taken.push(rect);
@@ -131,6 +164,29 @@ export class Overlay {
       const ink = { ...style, colour: this.palette.ink };
       this.write(shown, within.x + 12 + swatch, y, 13, "left", within, ink);
       y += 18;
+    }
+  }
+
+  /** Sea surface and seabed, seen along themselves, at these heights in the picture. */
+  levels(within: Rect, surface: number | null, bottom: number | null): void {
+    const { context, palette } = this;
+    const [left, right] = [within.x, within.x + within.width];
+    const end = within.y + within.height;
+    if (bottom !== null && bottom < end) {
+      context.globalAlpha = 0.45;
+      context.fillStyle = palette.seabed;
+      context.fillRect(left, Math.max(bottom, within.y), within.width, end - Math.max(bottom, within.y));
+      context.globalAlpha = 1;
+    }
+    context.lineWidth = 1.5;
+    for (const [y, colour] of [[surface, palette.sea], [bottom, palette.seabedGrid]] as const) {
+      if (y !== null) {
+        context.strokeStyle = colour;
+        context.beginPath();
+        context.moveTo(left, y);
+        context.lineTo(right, y);
+        context.stroke();
+      }
     }
   }
 
@@ -240,7 +296,8 @@ export class Overlay {
     this.reserve({ x: left - 3, y: top - 3, width: Math.max(...xs) - left + 6, height: Math.abs(end.y - start.y) + 6 });
     const middle = 0.5 * (left + Math.max(...xs));
     const label = `Current ${number(fastest, 3)} m/s`;
-    for (const dy of [-16, -30, Math.abs(end.y - start.y) + 16]) {
+    const [above, below] = [[-16, -30], [Math.abs(end.y - start.y) + 16]];
+    for (const dy of within.width < 500 ? [...below, ...above] : [...above, ...below]) {
       for (const align of ["center", "right", "left"] as const) {
         const x = align === "center" ? middle : align === "right" ? Math.max(...xs) : left;
         if (this.write(label, x, top + dy, 11.5, align, within, { colour: palette.current })) {
@@ -250,22 +307,52 @@ export class Overlay {
     }
   }
 
-  /** Names beside their things, the important ones first; what finds no room stays unwritten. */
-  names(within: Rect, items: { name: string; at: { x: number; y: number }; size: number; weight: number; gap: number }[]): void {
-    for (const { name, at, size, weight, gap } of items) {
-      const spots = [
-        [gap, 0, "left"],
-        [-gap, 0, "right"],
-        [0, -gap - 6, "center"],
-        [0, gap + 6, "center"],
-        [gap, -14, "left"],
-        [-gap, -14, "right"],
-        [gap, 14, "left"],
-        [-gap, 14, "right"],
-      ] as const;
-      spots.some(([dx, dy, align]) =>
-        this.write(name, at.x + dx, at.y + dy, size, align, within, { weight }),
-      );
+  /**
+   * Names beside their things, the important ones first. A name stands where it covers least of what
+   * is drawn (`drawn`), stays there while the scene moves, and is left out where it would cover
+   * another.
+   */
+  names(within: Rect, items: NamedPlace[], drawn: Rect[]): void {
+    for (const { key, name, at, size, weight, gap, cover } of items) {
+      this.font(size, weight);
+      const half = this.measure(name) / 2 + 2;
+      const height = 1.24 * size;
+      const standing = (spot: Spot) => ({
+        x: at.x + spot.x * (gap.x + half),
+        y: at.y + spot.y * (gap.y + height / 2),
+      });
+      const cost = (spot: Spot): number => {
+        const { x, y } = standing(spot);
+        const rect = { x: x - half, y: y - height / 2, width: 2 * half, height };
+        if (!isWithin(rect, within) || !this.free(rect)) {
+          return Infinity;
+        }
+        // A name that is nearer to another thing would be taken for that one's.
+        const own = distance(at, rect);
+        if (items.some((other) => other.key !== key && distance(other.at, rect) < own + 4)) {
+          return Infinity;
+        }
+        const covered = drawn.reduce((sum, other) => sum + overlap(rect, other), 0);
+        const share = covered / (2 * half * height);
+        const far = Math.abs(spot.y) > 1.5 ? 0.2 : 0;
+        return share > cover ? Infinity : share + far;
+      };
+      let best = -1;
+      let least = Infinity;
+      SPOTS.forEach((spot, index) => {
+        // The place it had before is given up only for one that is clearly better.
+        const found = cost(spot) + 0.01 * index - (this.spots.get(key) === index ? 0.25 : 0);
+        if (found < least) {
+          [least, best] = [found, index];
+        }
+      });
+      if (best < 0) {
+        this.spots.delete(key);
+        continue;
+      }
+      this.spots.set(key, best);
+      const place = standing(SPOTS[best]);
+      this.write(name, place.x, place.y, size, "center", within, { weight });
     }
   }
 
@@ -337,7 +424,7 @@ export class Overlay {
         context.moveTo(bar.x + bar.width, y);
         context.lineTo(bar.x + bar.width + 4, y);
         context.stroke();
-        this.write(tick(value, marks.step), bar.x + bar.width + 7, y, 11.5, "left", all);
+        this.write(tick(value, marks.step), bar.x + bar.width + 8, y, 11.5, "left", all, { halo: false });
       }
     } else if (Number.isFinite(low)) {
       this.write(number(low), bar.x + bar.width + 7, bar.y + bar.height / 2, 11.5, "left", all);
@@ -349,4 +436,27 @@ export class Overlay {
       this.write(word, box.x + box.width, y, 12, "right", all, { weight: 600, force: true });
     });
   }
+}
+
+function isWithin(rect: Rect, outer: Rect): boolean {
+  return (
+    rect.x >= outer.x &&
+    rect.x + rect.width <= outer.x + outer.width &&
+    rect.y >= outer.y &&
+    rect.y + rect.height <= outer.y + outer.height
+  );
+}
+
+/** From a point to a rectangle. */
+function distance(point: { x: number; y: number }, rect: Rect): number {
+  const dx = Math.max(rect.x - point.x, 0, point.x - rect.x - rect.width);
+  const dy = Math.max(rect.y - point.y, 0, point.y - rect.y - rect.height);
+  return Math.hypot(dx, dy);
+}
+
+/** Area that two rectangles share. */
+function overlap(a: Rect, b: Rect): number {
+  const width = Math.min(a.x + a.width, b.x + b.width) - Math.max(a.x, b.x);
+  const height = Math.min(a.y + a.height, b.y + b.height) - Math.max(a.y, b.y);
+  return width > 0 && height > 0 ? width * height : 0;
 }

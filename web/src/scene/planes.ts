@@ -1,6 +1,17 @@
 // Sea surface and seabed: discs with a grid of round distances, fading outwards.
 
-import { Color, DoubleSide, Mesh, PlaneGeometry, ShaderMaterial, Vector2 } from "three";
+import {
+  Color,
+  CustomBlending,
+  DoubleSide,
+  Mesh,
+  OneFactor,
+  OneMinusSrcAlphaFactor,
+  PlaneGeometry,
+  ShaderMaterial,
+  SrcAlphaFactor,
+  Vector2,
+} from "three";
 
 const VERTEX = /* glsl */ `
   varying vec2 place;
@@ -46,13 +57,22 @@ const FRAGMENT = /* glsl */ `
 export class Plane {
   readonly mesh: Mesh<PlaneGeometry, ShaderMaterial>;
 
-  constructor(order: number) {
+  /**
+   * The seabed is `behind` all: drawn before anything else. The sea veils what is beyond it and
+   * nothing before it: drawn after all solid things.
+   */
+  constructor(behind: boolean) {
     const material = new ShaderMaterial({
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
-      transparent: true,
+      transparent: !behind,
+      blending: CustomBlending,
+      blendSrc: SrcAlphaFactor,
+      blendDst: OneMinusSrcAlphaFactor,
+      blendSrcAlpha: OneFactor,
+      blendDstAlpha: OneMinusSrcAlphaFactor,
       depthWrite: false,
-      depthTest: false,
+      depthTest: !behind,
       side: DoubleSide,
       uniforms: {
         centre: { value: new Vector2() },
@@ -67,7 +87,7 @@ export class Plane {
     });
     this.mesh = new Mesh(new PlaneGeometry(2, 2), material);
     this.mesh.frustumCulled = false;
-    this.mesh.renderOrder = order;
+    this.mesh.renderOrder = behind ? -1 : 1;
   }
 
   /** `shift`: from scene coordinates to the grid's, which stands still in the sea [m]. */

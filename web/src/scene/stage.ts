@@ -12,14 +12,14 @@ import {
   Vector3,
   WebGLRenderer,
 } from "three";
-import { CASE_COLOURS, DARK, LIGHT, Palette, mapBytes } from "../colour";
+import { DARK, LIGHT, Palette, caseColour, mapBytes } from "../colour";
 import { niceStep, seconds, shownUnit, tick, title } from "../format";
 import type { Options, Selection } from "../options";
 import type { CaseData, CaseFrame } from "../store/case_data";
 import { OrbitCamera, Preset } from "./camera";
 import { CaseView, Hit, staticBounds } from "./case_view";
 import type { LineLook } from "./line_mesh";
-import { Overlay, Rect } from "./overlay";
+import { Overlay, Project, Rect } from "./overlay";
 import { Plane } from "./planes";
 
 interface Viewport {
@@ -28,6 +28,16 @@ interface Viewport {
   sea: Plane;
   seabed: Plane;
   rect: Rect;
+}
+
+/** What writing over a view needs to know of it. */
+interface Ground {
+  project: Project;
+  /** Length of a pixel at a place [m]. */
+  pixelAt: (place: Vector3) => number;
+  bounds: { min: Vector3; max: Vector3 };
+  /** Of the grid [m]. */
+  spacing: number;
 }
 
 export interface StageState {
@@ -99,7 +109,7 @@ export class Stage {
         world.add(new HemisphereLight(0xffffff, 0x8899aa, 1.9), light);
         const views = group.map((data) => new CaseView(data, this.palette));
         views.forEach((view) => world.add(view.group));
-        const [sea, seabed] = [new Plane(2), new Plane(1)];
+        const [sea, seabed] = [new Plane(false), new Plane(true)];
         world.add(seabed.mesh, sea.mesh);
         return { world, views, sea, seabed, rect: { x: 0, y: 0, width: 1, height: 1 } };
       });
@@ -226,7 +236,7 @@ export class Stage {
       const reach = Math.max(2.6 * radius, 10);
       viewport.sea.mesh.visible = options.sea && depth > 0;
       viewport.sea.place(0, middle, reach, spacing, shift);
-      viewport.sea.colour(palette.sea, palette.sea, 0.14, 0.34);
+      viewport.sea.colour(palette.sea, palette.sea, 0.2, 0.4);
       viewport.seabed.mesh.visible = options.seabed && depth > 0;
       viewport.seabed.place(-depth, middle, reach, spacing, shift);
       viewport.seabed.colour(palette.seabed, palette.seabedGrid, 0.55, 0.3);
@@ -238,8 +248,7 @@ export class Stage {
         return (away * tangent) / rect.height;
       };
       for (const view of views) {
-        const number_ = options.cases.indexOf(view.data.name);
-        const colour = CASE_COLOURS[Math.max(number_, 0) % CASE_COLOURS.length];
+        const colour = caseColour(options.cases.indexOf(view.data.name));
         const look: LineLook = {
           map: this.texture,
           range: new Vector2(...state.range),
@@ -255,7 +264,7 @@ export class Stage {
       renderer.setViewport(rect.x, y, rect.width, rect.height);
       renderer.setScissor(rect.x, y, rect.width, rect.height);
       renderer.render(viewport.world, camera);
-      this.annotate(viewport, index, state, options, project, bounds, spacing);
+      this.annotate(viewport, index, state, options, { project, pixelAt, bounds, spacing });
     }
   }
 
@@ -264,9 +273,7 @@ export class Stage {
     index: number,
     state: StageState,
     options: Readonly<Options>,
-    project: (place: Vector3) => { x: number; y: number } | null,
-    bounds: { min: Vector3; max: Vector3 },
-    spacing: number,
+    { project, pixelAt, bounds, spacing }: Ground,
   ): void {
     const { rect, views } = viewport;
     const context = this.overlayCanvas.getContext("2d");
@@ -285,12 +292,11 @@ export class Stage {
     }
     const heading = views.map((view) => {
       const { name, description } = view.data.description;
-      const number_ = options.cases.indexOf(name);
       const ended = view.data.hasFrames && state.time > view.data.endTime + 1e-9;
       const end = ended ? ` (ends at ${seconds(view.data.endTime, state.decimals)} s)` : "";
       const text = `${name}${end}${description ? `: ${description}` : ""}`;
       const colour =
-        options.colourBy === "case" ? CASE_COLOURS[number_ % CASE_COLOURS.length] : undefined;
+        options.colourBy === "case" ? caseColour(options.cases.indexOf(name)) : undefined;
       return { text, colour, weight: 600 };
     });
     if (index === 0) {
@@ -309,8 +315,14 @@ export class Stage {
     const reach = Math.abs(across.x) * half.x + Math.abs(across.y) * half.y + 0.06 * size;
     const level = Math.abs(this.camera.elevation) < 1.2;
     const depth = views[0].data.scene?.water_depth_m ?? 0;
+    // Seen along itself a plane is a line: sea surface and seabed are drawn as such.
+    if (Math.abs(this.camera.elevation) < 0.01 && options.parallel && depth > 0) {
+      const surface = options.sea ? project(new Vector3(0, 0, 0)) : null;
+      const bottom = options.seabed ? project(new Vector3(0, 0, -depth)) : null;
+      this.overlay.levels(rect, surface?.y ?? null, bottom?.y ?? null);
+    }
     if (options.depthScale && level && depth > 0) {
-      const foot = centre.clone().addScaledVector(across, -reach);
+      const foot = centre.clone().addScaledVector(across, -reach - 0.04 * size);
       const shown = depth <= -bounds.min.z * 1.001 ? depth : Math.max(-bounds.min.z, 1);
       this.overlay.depthScale(rect, foot, shown, project);
     }
@@ -319,7 +331,7 @@ export class Stage {
       this.overlay.current(rect, foot, this.currentArrows(views[0].data, bounds, state.time), 0.2 * size, project);
     }
     if (options.labels) {
-      const order = { vessel: 0, body: 1, lump: 3, line: 2 };
+      const order = { vessel: 0, body: 1, lump: 2, line: 3 };
       // Cases that lie over each other have the same names: once is enough.
       const items = views
         .filter((view) => view.group.visible)
@@ -328,11 +340,17 @@ export class Stage {
         .sort((a, b) => order[a.kind] - order[b.kind])
         .flatMap(({ name, kind, place }) => {
           const at = Number.isFinite(place.x) ? project(place) : null;
-          const gap = { vessel: 20, body: 15, lump: 10, line: 10 }[kind];
-          const weight = kind === "vessel" || kind === "body" ? 600 : 400;
-          return at ? [{ name, at, size: kind === "lump" ? 11 : 12, weight, gap }] : [];
+          const large = kind === "vessel" || kind === "body";
+          const shown = views[0].shownSize(name) / pixelAt(place);
+          const gap = large ? { x: 3 + 0.55 * shown, y: 3 + 0.4 * shown } : { x: 8, y: 8 };
+          const [size, weight] = [kind === "lump" ? 11 : 12, large ? 600 : 400];
+          const key = `${index}/${kind}/${name}`;
+          return at ? [{ key, name, at, size, weight, gap, cover: large ? 2 : 0.5 }] : [];
         });
-      this.overlay.names(rect, items);
+      const drawn = views
+        .filter((view) => view.group.visible)
+        .flatMap((view) => view.footprint(project, pixelAt));
+      this.overlay.names(rect, items, drawn);
     }
     if ((options.sea || options.seabed) && depth > 0 && index === this.viewports.length - 1) {
       this.overlay.remark(rect, `Grid ${tick(spacing, spacing)} m`);
@@ -411,10 +429,9 @@ export class Stage {
   pick(x: number, y: number, reach: number): Selection | null {
     const radius = this.bounds.max.distanceTo(this.bounds.min) * 0.5;
     let best: Hit | null = null;
+    const at = this.viewAt(x, y);
     for (const { rect, views } of this.viewports) {
-      const inside =
-        x >= rect.x && y >= rect.y && x < rect.x + rect.width && y < rect.y + rect.height;
-      if (!inside) {
+      if (rect !== at) {
         continue;
       }
       const project = this.projector(rect, radius);
@@ -440,6 +457,26 @@ export class Stage {
       }
     }
     return null;
+  }
+
+  /** The part of the picture in which a point lies; all have one size. */
+  viewAt(x: number, y: number): Rect {
+    const inside = ({ rect }: Viewport) =>
+      x >= rect.x && y >= rect.y && x < rect.x + rect.width && y < rect.y + rect.height;
+    const found = this.viewports.find(inside) ?? this.viewports[0];
+    return found?.rect ?? { x: 0, y: 0, width: this.width, height: this.height };
+  }
+
+  /** Goes near a thing; returns whether there is one. */
+  near(selection: Selection): boolean {
+    for (const view of this.view) {
+      const place = view.placeOf(selection);
+      if (place && Number.isFinite(place.x)) {
+        this.camera.approach(place, view.spanOf(selection));
+        return true;
+      }
+    }
+    return false;
   }
 
   get size(): { width: number; height: number } {

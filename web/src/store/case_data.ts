@@ -1,7 +1,7 @@
 // One load case: where its data is, how far it has come, and frames of it at any time.
 
 import { getJson } from "../api";
-import { ChunkCache, readVector } from "./chunks";
+import { ChunkCache, Wanted, readVectors } from "./chunks";
 import type {
   ArrayPlace,
   CaseDescription,
@@ -36,6 +36,7 @@ export interface CaseFrame {
   poses: Map<string, Pose>;
 }
 
+const AXES = ["x", "y", "z"] as const;
 const POSE_CHANNELS = ["x", "y", "z", "roll", "pitch", "heading"] as const;
 
 export class CaseData {
@@ -106,22 +107,30 @@ export class CaseData {
     if (lines.length === 0 || time === null) {
       return;
     }
-    this.fieldTimes = await readVector(this.cache, lines[0].field_time, field_rows);
-    this.historyTimes = await readVector(this.cache, time, history_rows);
-    for (const line of lines) {
-      if (!this.arcLengths.has(line.name)) {
-        const arc = await readVector(this.cache, line.arc_length, line.arc_length.rows);
-        this.arcLengths.set(line.name, arc);
-        const axes = ["x", "y", "z"].map((axis) => quantityOf(line, axis)?.static_state);
-        const statics = new Float32Array(3 * arc.length).fill(NaN);
-        for (const [axis, array] of axes.entries()) {
-          if (array) {
-            const values = await readVector(this.cache, array, array.rows);
-            values.forEach((value, node) => (statics[3 * node + axis] = value));
-          }
-        }
-        this.statics.set(line.name, statics);
-      }
+    // Everything in one request: arc lengths and static positions only of lines that are new.
+    const fresh = lines.filter((line) => !this.arcLengths.has(line.name));
+    const wanted: Wanted[] = [
+      { array: lines[0].field_time, rows: field_rows },
+      { array: time, rows: history_rows },
+    ];
+    const places = fresh.map((line) => {
+      const arc = wanted.push(whole(line.arc_length)) - 1;
+      const axes = AXES.map((axis) => {
+        const array = quantityOf(line, axis)?.static_state;
+        return array ? wanted.push(whole(array)) - 1 : null;
+      });
+      return { line, arc, axes };
+    });
+    const read = await readVectors(this.cache, wanted);
+    [this.fieldTimes, this.historyTimes] = read;
+    for (const { line, arc, axes } of places) {
+      this.arcLengths.set(line.name, read[arc]);
+      const statics = new Float32Array(3 * read[arc].length).fill(NaN);
+      axes.forEach((index, axis) => {
+        const values = index === null ? [] : read[index];
+        values.forEach((value, node) => (statics[3 * node + axis] = value));
+      });
+      this.statics.set(line.name, statics);
     }
   }
 
@@ -224,7 +233,8 @@ export class CaseData {
     if (!array) {
       return null;
     }
-    const values = await readVector(this.cache, array, this.description.history_rows);
+    const rows = this.description.history_rows;
+    const [values] = await readVectors(this.cache, [{ array, rows }]);
     return { times: this.historyTimes.subarray(0, values.length), values };
   }
 
@@ -311,6 +321,10 @@ export function locate(times: Float64Array, time: number): { row: number; share:
     return { row: low, share: 0 };
   }
   return share > 1 - 1e-6 ? { row: high, share: 0 } : { row: low, share };
+}
+
+function whole(array: ArrayPlace): Wanted {
+  return { array, rows: array.rows };
 }
 
 function blend(

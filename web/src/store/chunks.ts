@@ -1,6 +1,6 @@
 // Single chunks of the store's arrays, checked, and kept as long as there is room.
 
-import { ConnectionLost, getStoreFile } from "../api";
+import { ConnectionLost, ServerError, getStoreFile, getVectors } from "../api";
 import { crc32c } from "./crc32c";
 import type { ArrayPlace } from "./types";
 
@@ -143,13 +143,57 @@ function decode(content: ArrayBuffer | null, array: ArrayPlace): Values {
     : new Float64Array(content.slice(0, length * size));
 }
 
-/** All written rows of an array with one axis. */
-export async function readVector(
-  cache: ChunkCache,
-  array: ArrayPlace,
-  rows: number,
-): Promise<Float64Array> {
-  const count = Math.min(rows, array.rows);
+/** An array with one axis, and how many of its rows are wanted. */
+export interface Wanted {
+  array: ArrayPlace;
+  rows: number;
+}
+
+/** Most arrays and most values in one request; the server's own bounds are a little wider. */
+const MOST_ARRAYS = 60;
+const MOST_VALUES = 4e6;
+
+/**
+ * Whole arrays with one axis. They lie on the disk in hundreds of small chunks, so the server joins
+ * them; where it cannot, because one is damaged or too long, they are read chunk by chunk.
+ */
+export async function readVectors(cache: ChunkCache, wanted: Wanted[]): Promise<Float64Array[]> {
+  const found: Float64Array[] = [];
+  for (let first = 0; first < wanted.length; ) {
+    let [last, values] = [first, 0];
+    while (last < wanted.length && last - first < MOST_ARRAYS && (last === first || values + length(wanted[last]) <= MOST_VALUES)) {
+      values += length(wanted[last++]);
+    }
+    found.push(...(await readJoined(cache, wanted.slice(first, last))));
+    first = last;
+  }
+  return found;
+}
+
+function length({ array, rows }: Wanted): number {
+  return Math.min(rows, array.rows);
+}
+
+async function readJoined(cache: ChunkCache, wanted: Wanted[]): Promise<Float64Array[]> {
+  try {
+    const content = await getVectors(wanted.map((entry) => [length(entry), entry.array.path]));
+    let first = 0;
+    return wanted.map((entry) => {
+      const values = new Float64Array(content, 8 * first, length(entry));
+      first += values.length;
+      return values;
+    });
+  } catch (error) {
+    if (!(error instanceof ServerError)) {
+      throw error;
+    }
+    return Promise.all(wanted.map((entry) => readChunkwise(cache, entry)));
+  }
+}
+
+async function readChunkwise(cache: ChunkCache, wanted: Wanted): Promise<Float64Array> {
+  const { array } = wanted;
+  const count = length(wanted);
   const out = new Float64Array(count);
   for (let chunk = 0; chunk * array.chunk_rows < count; chunk++) {
     const values = await cache.get(array, chunk, count);

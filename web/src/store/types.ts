@@ -61,6 +61,9 @@ export interface SceneVessel {
   position_m: [number, number, number];
   heading_deg: number;
   moves: boolean;
+  /** Null where the model does not say. */
+  shape?: "ship" | "platform" | "buoy" | "crawler" | null;
+  length_m?: number | null;
 }
 
 export interface SceneBody {

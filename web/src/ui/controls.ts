@@ -13,6 +13,7 @@ export interface Actions {
   faster(by: number): void;
   look(preset: Preset): void;
   fit(): void;
+  near(): void;
   nextCase(): void;
   nextQuantity(): void;
   nextNode(by: number): void;
@@ -37,6 +38,7 @@ const KEYS: { keys: string[]; shown: string; what: string; run: (a: Actions) => 
   { keys: ["3"], shown: "3", what: "View along x", run: (a) => a.look("front") },
   { keys: ["4"], shown: "4", what: "View from above", run: (a) => a.look("plan") },
   { keys: ["f", "F"], shown: "F", what: "Frame the whole system", run: (a) => a.fit() },
+  { keys: ["g", "G"], shown: "G", what: "Go near what is selected", run: (a) => a.near() },
   { keys: ["c", "C"], shown: "C", what: "Next load case", run: (a) => a.nextCase() },
   { keys: ["r", "R"], shown: "R", what: "Next result", run: (a) => a.nextQuantity() },
   { keys: ["n", "N"], shown: "N", what: "Next node of the line", run: (a) => a.nextNode(1) },
@@ -83,6 +85,13 @@ export function bindScene(container: HTMLElement, stage: Stage, actions: Actions
   const { camera } = stage;
   const pointers = new Map<number, { x: number; y: number }>();
   let moved = 0;
+  /** Where a point of the window is from the middle of its view [px]. */
+  const fromMiddle = ({ x, y }: { x: number; y: number }): [number, number] => {
+    const box = container.getBoundingClientRect();
+    const view = stage.viewAt(x - box.left, y - box.top);
+    return [x - box.left - view.x - view.width / 2, y - box.top - view.y - view.height / 2];
+  };
+  const heightAt = () => stage.viewAt(0, 0).height;
   container.addEventListener("contextmenu", (event) => event.preventDefault());
   container.addEventListener("pointerdown", (event) => {
     container.setPointerCapture(event.pointerId);
@@ -98,13 +107,14 @@ export function bindScene(container: HTMLElement, stage: Stage, actions: Actions
     }
     const [dx, dy] = [event.clientX - last.x, event.clientY - last.y];
     moved += Math.hypot(dx, dy);
-    const { height } = stage.size;
+    const height = heightAt();
     if (pointers.size === 2) {
       const other = [...pointers].find(([id]) => id !== event.pointerId)?.[1];
       if (other) {
         const before = Math.hypot(last.x - other.x, last.y - other.y);
         const after = Math.hypot(event.clientX - other.x, event.clientY - other.y);
-        camera.zoom(before / Math.max(after, 1));
+        const middle = { x: (event.clientX + other.x) / 2, y: (event.clientY + other.y) / 2 };
+        camera.zoom(before / Math.max(after, 1), ...fromMiddle(middle), heightAt());
         camera.pan(dx / 2, dy / 2, height);
       }
     } else if (event.buttons & 2 || event.buttons & 4 || event.shiftKey) {
@@ -131,14 +141,16 @@ export function bindScene(container: HTMLElement, stage: Stage, actions: Actions
     (event) => {
       event.preventDefault();
       const lines = event.deltaMode === 1 ? 20 : 1;
-      camera.zoom(Math.exp(Math.max(-1, Math.min(1, event.deltaY * lines * 0.0015))));
+      const factor = Math.exp(Math.max(-1, Math.min(1, event.deltaY * lines * 0.0015)));
+      camera.zoom(factor, ...fromMiddle({ x: event.clientX, y: event.clientY }), heightAt());
       actions.redraw();
     },
     { passive: false },
   );
+  container.addEventListener("dblclick", () => actions.near());
   container.addEventListener("keydown", (event) => {
     const turn = 0.07;
-    const { height } = stage.size;
+    const height = heightAt();
     const moves: Record<string, () => void> = event.shiftKey
       ? {
           ArrowLeft: () => camera.pan(30, 0, height),

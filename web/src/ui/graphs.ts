@@ -1,12 +1,12 @@
 // The graphs of what is selected: its history, and for a line the range graph at this moment.
 
-import { CASE_COLOURS } from "../colour";
+import { caseColour, caseDash } from "../colour";
 import { number, seconds, shownUnit, title } from "../format";
 import type { OptionStore, Selection } from "../options";
 import { CaseData, quantityOf } from "../store/case_data";
 import type { Envelope } from "../store/types";
 import { Chart, Curve } from "./chart";
-import { byId, fill, themeColour } from "./dom";
+import { byId, fill, make, themeColour } from "./dom";
 
 /** What the graphs show, for export as numbers. */
 export interface GraphData {
@@ -75,7 +75,7 @@ export class Graphs {
   }
 
   /** Selection, result, cases or stored rows have changed. */
-  refresh(drawn = true): void {
+  refresh(drawn = this.begun): void {
     // The history of one node needs every chunk of its array: the first picture goes before.
     this.begun ||= drawn;
     const { selection, quantity } = this.options.get();
@@ -168,7 +168,7 @@ export class Graphs {
       group("Bodies", "body", names((data) => data.scene?.bodies.map((body) => body.name) ?? [])),
       group("Vessels", "vessel", names((data) => data.scene?.vessels.map((v) => v.name) ?? [])),
     ].filter(({ entries }) => entries.length > 0);
-    const { selection, quantity } = this.options.get();
+    const { selection } = this.options.get();
     const chosen = selection ? `${selection.kind}:${selection.name}` : "";
     fill(byId("object"), groups, chosen);
     const isLine = selection?.kind === "line";
@@ -181,14 +181,15 @@ export class Graphs {
     const channels = own.filter((name) => name.startsWith(`${selection.name}.`));
     const entries = channels.map((name): [string, string] => [
       name,
-      title(name.slice(selection.name.length + 1).replaceAll(".", ", ")),
+      channelTitle(name, selection.name),
     ]);
     if (isLine) {
-      entries.unshift(["", `${title(quantity)} at the node`]);
+      entries.unshift(["", "Result at the node"]);
     }
     if (!entries.some(([value]) => value === this.channel)) {
-      const offset = entries.find(([value]) => value.endsWith(".offset_x"));
-      this.channel = (offset ?? entries[0] ?? [""])[0];
+      // What most would look at first: how far a body is off, how a vessel heaves.
+      const ending = (end: string) => entries.find(([value]) => value.endsWith(end));
+      this.channel = (ending(".offset_x") ?? ending(".z") ?? entries[0] ?? [""])[0];
     }
     fill(byId("channel"), [{ label: "", entries }], this.channel);
   }
@@ -214,17 +215,20 @@ export class Graphs {
     const shown = this.unitOf(all, this.histories[0].unit);
     const curves = this.histories.map(({ name, times, values }) => ({
       label: name,
-      colour: CASE_COLOURS[Math.max(cases.indexOf(name), 0) % CASE_COLOURS.length],
+      colour: caseColour(cases.indexOf(name)),
+      dash: caseDash(cases.indexOf(name)),
       x: times,
       y: Array.from(values, (value) => (value === null ? null : value * shown.factor)),
     }));
     this.data.history = curves;
     this.data.historyUnit = shown.unit;
     const what = this.channel
-      ? title(this.channel.slice(selection.name.length + 1).replaceAll(".", ", "))
+      ? channelTitle(this.channel, selection.name)
       : title(quantity);
     const yLabel = `${what} [${shown.unit}]`;
     this.history.show({ xLabel: "Time [s]", yLabel, curves, bands: [] });
+    const several = curves.length > 1 ? curves : [];
+    byId("history-legend").replaceChildren(...several.map(({ label, colour, dash }) => legendEntry(label, colour, dash)));
     byId("history-title").textContent = `Time history: ${this.channel || `${selection.name}, ${what.toLowerCase()}`}`;
     byId("history-text").textContent = curves
       .map(({ label, y }) => {
@@ -232,7 +236,8 @@ export class Graphs {
         const low = known.reduce((a, b) => Math.min(a, b), Infinity);
         const high = known.reduce((a, b) => Math.max(a, b), -Infinity);
         const mark = this.histories.length > 1 ? `${label}: ` : "";
-        return `${mark}${number(low)} to ${number(high)} ${shown.unit}`;
+        const same = number(low) === number(high);
+        return `${mark}${same ? "always " : `${number(low)} to `}${number(high)} ${shown.unit}`;
       })
       .join("; ");
   }
@@ -307,8 +312,15 @@ export class Graphs {
       const values = current[index];
       const arcs = data.arcLengths.get(selection.name);
       if (values && arcs) {
-        const colour = CASE_COLOURS[Math.max(order.indexOf(data.name), 0) % CASE_COLOURS.length];
-        curves.push({ label: `now, ${data.name}`, colour, width: 2.5, x: arcs, y: scaled(values) });
+        const place = order.indexOf(data.name);
+        curves.push({
+          label: `now, ${data.name}`,
+          colour: caseColour(place),
+          dash: caseDash(place),
+          width: 2.5,
+          x: arcs,
+          y: scaled(values),
+        });
       }
     }
     this.data.range = curves;
@@ -382,6 +394,29 @@ export class Graphs {
       this.options.set({ selection: { ...selection, node } });
     }
   }
+}
+
+/** What a channel of an object is: `ship.x` of `ship` is `Position x`. */
+function channelTitle(channel: string, object: string): string {
+  const name = channel.slice(object.length + 1);
+  return name.length === 1 ? `Position ${name}` : title(name.replaceAll(".", ", "));
+}
+
+/** A stretch of a curve beside its name. */
+function legendEntry(name: string, colour: string, dash: number[]): HTMLElement {
+  const entry = make("span", "", { class: "entry" });
+  const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  svg.setAttribute("width", "30");
+  svg.setAttribute("height", "8");
+  svg.setAttribute("aria-hidden", "true");
+  const line = document.createElementNS("http://www.w3.org/2000/svg", "path");
+  line.setAttribute("d", "M0 4H30");
+  line.setAttribute("stroke", colour);
+  line.setAttribute("stroke-width", "2.5");
+  line.setAttribute("stroke-dasharray", dash.join(" "));
+  svg.append(line);
+  entry.append(svg, name);
+  return entry;
 }
 
 function extreme(values: (number | null)[], pick: (a: number, b: number) => number): number | null {

@@ -1,8 +1,8 @@
 // The tabs, and the settings in them.
 
-import { CASE_COLOURS } from "../colour";
+import { caseColour } from "../colour";
 import type { MapName } from "../colour";
-import { shownUnit } from "../format";
+import { shownUnit, title } from "../format";
 import type { Options, OptionStore } from "../options";
 import type { CaseData } from "../store/case_data";
 import type { StudyReport } from "../store/types";
@@ -137,7 +137,7 @@ export class Panels {
   /** The list of cases with their states, and what can be kept in the middle. */
   refresh(study: StudyReport, cases: CaseData[]): void {
     const options = this.options.get();
-    const key = JSON.stringify([study.cases, options.cases]);
+    const key = JSON.stringify([study.cases, options.cases, caseColour(0)]);
     if (key !== this.listKey) {
       this.listKey = key;
       this.caseList(study);
@@ -171,7 +171,7 @@ export class Panels {
         text.append(make("small", progressWords(found)));
         const swatch = make("span", "", { class: "swatch" });
         const index = options.cases.indexOf(found.name);
-        swatch.style.background = index < 0 ? "transparent" : CASE_COLOURS[index % CASE_COLOURS.length];
+        swatch.style.background = index < 0 ? "transparent" : caseColour(index);
         label.append(input, text, swatch);
         return label;
       }),
@@ -199,4 +199,21 @@ function progressWords(found: StudyReport["cases"][number]): string {
     failed: `the solver gave up: ${found.error?.message ?? "no reason is stored"}`,
   };
   return words[found.status];
+}
+
+/** Fills the list of results along lines, positions last; returns the one that is chosen. */
+export function fillQuantities(cases: CaseData[], wanted: string): string | null {
+  const lines = cases.flatMap((data) => data.description.lines);
+  const names = [...new Set(lines.flatMap((line) => line.quantities.map((q) => q.name)))];
+  if (names.length === 0) {
+    return null;
+  }
+  const rank = (name: string) => (["x", "y", "z"].includes(name) ? 1 : 0);
+  names.sort((a, b) => rank(a) - rank(b));
+  const entries = names.map((name): [string, string] => {
+    return [name, name.length === 1 ? `Position ${name}` : title(name)];
+  });
+  const chosen = names.includes(wanted) ? wanted : names[0];
+  fill(byId("quantity"), [{ label: "", entries }], chosen);
+  return chosen;
 }

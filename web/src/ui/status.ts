@@ -1,6 +1,7 @@
 // What the page says about the run, the server, and what is missing.
 
 import { ConnectionLost, ServerError } from "../api";
+import { title } from "../format";
 import type { CaseData } from "../store/case_data";
 import type { StudyReport } from "../store/types";
 import { banner, clearBanner, say } from "./banners";
@@ -49,9 +50,24 @@ export function tellStudy(study: StudyReport, shown: readonly string[]): void {
   }
 }
 
+/** Says in words what the picture shows. */
+export function describeScene(cases: CaseData[], quantity: string, time: string): void {
+  const names = cases.map((data) => data.name).join(", ");
+  const lines = new Set(cases.flatMap((data) => data.description.lines.map((line) => line.name)));
+  const label = `Case ${names} at ${time} seconds: lines ${[...lines].join(", ")}, coloured by ${title(quantity).toLowerCase()}`;
+  if (byId("canvas").getAttribute("aria-label") !== label) {
+    byId("canvas").setAttribute("aria-label", label);
+  }
+}
+
 /** Says in the scene why there is nothing in it. */
-export function tellEmpty(cases: CaseData[]): void {
+export function tellEmpty(cases: CaseData[], study: StudyReport | null): void {
   const empty = byId("empty");
+  if (study?.cases.length === 0) {
+    empty.hidden = false;
+    empty.textContent = "This store holds no load case. Run the model again.";
+    return;
+  }
   const words = {
     pending: "has not begun; it appears here as soon as it does",
     running: "has no stored step yet: its static state is being sought",
