@@ -294,7 +294,8 @@ export class App {
         this.draw(this.forced || !moving);
         this.forced = false;
         const spent = performance.now() - begin;
-        if (moving) {
+        // Pictures of a run that is followed come as it stores steps, however fast they are drawn.
+        if (playback.playing) {
           this.rate.moved(now, spent, this.options.get().adaptive);
           byId("scene").dataset.fps = String(this.rate.fps);
         } else {
@@ -324,7 +325,7 @@ export class App {
     this.ready = this.stage.update(time, options);
     if (this.playback.playing) {
       for (const data of this.shown()) {
-        data.prefetch(time + 1.5 * this.playback.speed, options.quantity);
+        data.prefetch(time, this.playback.speed, options.quantity);
       }
     }
     byId("loading").hidden = this.ready;

@@ -178,6 +178,8 @@ test("a run is followed while it goes on", async () => {
     before_,
   );
   assert.ok(await page.isChecked("#tail"), "the newest step is followed");
+  const share = await page.$eval("#canvas", (canvas) => canvas.width / canvas.clientWidth);
+  assert.ok(share > 0.99, `steps that come slowly are no reason to draw coarsely: ${share}`);
   await scrub(page, 3);
   assert.ok(!(await page.isChecked("#tail")));
   const tension = array(out, "cases/calm/lines/pipe/effective_tension");

@@ -306,6 +306,13 @@ export class Stage {
     const direction = this.camera.direction();
     const across = this.camera.right();
     const up = new Vector3().crossVectors(direction, across);
+    const depth = views[0].data.scene?.water_depth_m ?? 0;
+    // Seen along itself a plane is a line: sea surface and seabed are drawn as such.
+    if (Math.abs(this.camera.elevation) < 0.01 && options.parallel && depth > 0) {
+      const surface = options.sea ? project(new Vector3(0, 0, 0)) : null;
+      const bottom = options.seabed ? project(new Vector3(0, 0, -depth)) : null;
+      this.overlay.levels(rect, surface?.y ?? null, bottom?.y ?? null);
+    }
     if (rect.height > 170) {
       this.overlay.axes(rect, across, up, direction);
     }
@@ -314,13 +321,6 @@ export class Stage {
     const size = half.length();
     const reach = Math.abs(across.x) * half.x + Math.abs(across.y) * half.y + 0.06 * size;
     const level = Math.abs(this.camera.elevation) < 1.2;
-    const depth = views[0].data.scene?.water_depth_m ?? 0;
-    // Seen along itself a plane is a line: sea surface and seabed are drawn as such.
-    if (Math.abs(this.camera.elevation) < 0.01 && options.parallel && depth > 0) {
-      const surface = options.sea ? project(new Vector3(0, 0, 0)) : null;
-      const bottom = options.seabed ? project(new Vector3(0, 0, -depth)) : null;
-      this.overlay.levels(rect, surface?.y ?? null, bottom?.y ?? null);
-    }
     if (options.depthScale && level && depth > 0) {
       const foot = centre.clone().addScaledVector(across, -reach - 0.04 * size);
       const shown = depth <= -bounds.min.z * 1.001 ? depth : Math.max(-bounds.min.z, 1);

@@ -36,6 +36,10 @@ export interface CaseFrame {
   poses: Map<string, Pose>;
 }
 
+/** How long before it is shown data is asked for, and pictures that are drawn in a second. */
+const LEAD_S = 1.5;
+const PICTURES_PER_S = 30;
+
 const AXES = ["x", "y", "z"] as const;
 const POSE_CHANNELS = ["x", "y", "z", "roll", "pitch", "heading"] as const;
 
@@ -200,12 +204,18 @@ export class CaseData {
     return this.rest;
   }
 
-  /** Asks for the data of a time that will be shown soon. */
-  prefetch(time: number, quantity: string): void {
-    if (!this.hasFrames || time > this.endTime) {
+  /** Asks for the data that will be shown soon, `speed` seconds per second from a time on. */
+  prefetch(time: number, speed: number, quantity: string): void {
+    const ahead = time + LEAD_S * speed;
+    if (!this.hasFrames || ahead > this.endTime) {
       return;
     }
-    const { row } = this.locate(time);
+    const { row } = this.locate(ahead);
+    const passed = (row - this.locate(time).row) / (LEAD_S * PICTURES_PER_S);
+    // Where pictures leap over whole chunks, nobody knows which ones will be needed.
+    if (passed > this.description.lines[0].quantities[0]?.field.chunk_rows) {
+      return;
+    }
     for (const place of this.description.lines) {
       for (const name of ["x", "y", "z", quantity]) {
         const array = quantityOf(place, name)?.field;
