@@ -49,6 +49,14 @@ impl BodyPoints {
             .iter()
             .map(|time| Place::of(*time, &times))
             .collect();
+        // Of long histories only the rows about the wanted times are kept.
+        let about = places.iter().flat_map(|place| match place.share {
+            0.0 => place.row..place.row + 1,
+            _ => place.row..place.row + 2,
+        });
+        let mut rows: Vec<usize> = about.collect();
+        rows.sort_unstable();
+        rows.dedup();
         let vessels = scene.vessels.iter().map(|vessel| (&vessel.name, 0));
         let bodies = scene.bodies.iter().map(|body| (&body.name, 1));
         for (name, kind) in vessels.chain(bodies) {
@@ -64,7 +72,8 @@ impl BodyPoints {
                 histories.push(contents.stored.channel_rows(channel)?.read(&rows)?);
             }
             let pose = |row: usize| -> Pose {
-                let value = |channel: usize| histories[channel][row];
+                let kept = rows.partition_point(|kept| *kept < row);
+                let value = |channel: usize| histories[channel][kept];
                 Pose {
                     position_m: [value(0), value(1), value(2)],
                     quaternion: quaternion([value(3), value(4), value(5)]),
