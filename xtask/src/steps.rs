@@ -40,7 +40,7 @@ const STEPS: [Step; 7] = [
     },
     Step {
         name: "read-back",
-        what: "xarray reads a store that catenix wrote (needs python3 with venv, and pip)",
+        what: "xarray reads stores, and pandas, xarray and VTK read exports (needs python3 with venv, and pip)",
         run: read_back::run,
     },
     Step {
