@@ -101,7 +101,7 @@ impl Block6 {
     }
 
     #[inline]
-    fn column(&self, column: usize) -> &[f64; 6] {
+    pub(crate) fn column(&self, column: usize) -> &[f64; 6] {
         self.0[6 * column..]
             .first_chunk()
             .expect("a block has six columns of six")

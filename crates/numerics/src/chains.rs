@@ -69,6 +69,16 @@ impl Topology {
         &self.chains
     }
 
+    /// Number of frames of chains; the junctions follow them.
+    pub(crate) fn chain_frames(&self) -> usize {
+        self.chain_frames
+    }
+
+    /// Which junctions are coupled.
+    pub(crate) fn junctions(&self) -> &JunctionPattern {
+        &self.junctions
+    }
+
     /// Number of frames, junctions included.
     pub fn frame_count(&self) -> usize {
         self.chain_frames + self.junctions.len()
@@ -254,7 +264,7 @@ impl Factorisation {
     ) -> Result<(), FactorError> {
         let (chain, base) = (&topology.chains[index], topology.chain_frames);
         let order = Order::of(chain);
-        let [mut near_column, mut near_row] = order.near_blocks(index, matrix);
+        let [mut near_column, mut near_row] = *order.near_blocks(index, matrix);
         let near = order.near.map(|frame| frame - base);
         let far = order.far.map(|frame| frame - base);
         let mut pivot_block = matrix.diagonal[order.frame(0)];
@@ -262,7 +272,7 @@ impl Factorisation {
             let k = order.frame(step);
             let lu = BlockLu::factorise(&pivot_block).map_err(|_| FactorError { frame: k })?;
             self.lu[k] = lu;
-            let (mut ahead, back) = order.link(step, index, matrix);
+            let (&(mut ahead), &back) = order.link(step, index, matrix);
             lu.solve_block(&mut ahead);
             if let Some(near) = near {
                 self.near_row[k] = near_row;
@@ -365,16 +375,18 @@ fn negative_eigenvalues_of(lu: &BlockLu) -> usize {
 
 /// Elimination order of a chain: from the end without a junction, if there is one, since a
 /// junction at the near end fills a border column all along the chain.
-struct Order {
+pub(crate) struct Order {
     first: usize,
     len: usize,
     reversed: bool,
-    near: Option<usize>,
-    far: Option<usize>,
+    /// Junction before the first frame.
+    pub(crate) near: Option<usize>,
+    /// Junction behind the last frame.
+    pub(crate) far: Option<usize>,
 }
 
 impl Order {
-    fn of(chain: &Chain) -> Order {
+    pub(crate) fn of(chain: &Chain) -> Order {
         let reversed = chain.head.is_some() && chain.tail.is_none();
         let (near, far) = if reversed {
             (chain.tail, chain.head)
@@ -390,7 +402,13 @@ impl Order {
         }
     }
 
-    fn frame(&self, step: usize) -> usize {
+    /// Number of frames.
+    pub(crate) fn len(&self) -> usize {
+        self.len
+    }
+
+    #[inline(always)]
+    pub(crate) fn frame(&self, step: usize) -> usize {
         if self.reversed {
             self.first + self.len - 1 - step
         } else {
@@ -399,22 +417,28 @@ impl Order {
     }
 
     /// (frame, near junction) and (near junction, frame) of the first frame in order.
-    fn near_blocks(&self, chain: usize, matrix: &BlockMatrix) -> [Block6; 2] {
+    pub(crate) fn near_blocks<'m>(&self, chain: usize, matrix: &'m BlockMatrix) -> &'m [Block6; 2] {
         if self.reversed {
-            matrix.tail[chain]
+            &matrix.tail[chain]
         } else {
-            matrix.head[chain]
+            &matrix.head[chain]
         }
     }
 
     /// Blocks (k, next) and (next, k), where next is the far junction after the last frame.
-    fn link(&self, step: usize, chain: usize, matrix: &BlockMatrix) -> (Block6, Block6) {
+    #[inline(always)]
+    pub(crate) fn link<'m>(
+        &self,
+        step: usize,
+        chain: usize,
+        matrix: &'m BlockMatrix,
+    ) -> (&'m Block6, &'m Block6) {
         let k = self.frame(step);
         match (self.reversed, step + 1 == self.len) {
-            (false, false) => (matrix.upper[k], matrix.lower[k]),
-            (true, false) => (matrix.lower[k - 1], matrix.upper[k - 1]),
-            (false, true) => (matrix.tail[chain][0], matrix.tail[chain][1]),
-            (true, true) => (matrix.head[chain][0], matrix.head[chain][1]),
+            (false, false) => (&matrix.upper[k], &matrix.lower[k]),
+            (true, false) => (&matrix.lower[k - 1], &matrix.upper[k - 1]),
+            (false, true) => (&matrix.tail[chain][0], &matrix.tail[chain][1]),
+            (true, true) => (&matrix.head[chain][0], &matrix.head[chain][1]),
         }
     }
 }
@@ -422,6 +446,7 @@ impl Order {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Elimination;
     use nalgebra::{DMatrix, DVector};
     use proptest::prelude::*;
 
@@ -474,12 +499,22 @@ mod tests {
         factors.solve(&topology, &mut x);
         let b = DVector::from_fn(6 * frame_count, |row, _| rhs[row / 6][row % 6]);
         let want = dense(&topology, &matrix).lu().solve(&b).unwrap();
-        for (k, got) in x.iter().enumerate() {
-            assert!(
-                (got - want.fixed_rows::<6>(6 * k)).norm() < 1e-8,
-                "frame {k}"
-            );
-        }
+        let near = |x: &[Vector6]| {
+            for (k, got) in x.iter().enumerate() {
+                assert!(
+                    (got - want.fixed_rows::<6>(6 * k)).norm() < 1e-8,
+                    "frame {k}"
+                );
+            }
+        };
+        near(&x);
+        let mut fast = Elimination::new(&topology);
+        fast.factorise_and_solve(&topology, &matrix, &rhs, &mut x)
+            .unwrap();
+        near(&x);
+        x.copy_from_slice(&rhs);
+        fast.solve(&topology, &mut x);
+        near(&x);
     }
 
     fn chain(first: usize, len: usize, head: Option<usize>, tail: Option<usize>) -> Chain {

@@ -9,7 +9,9 @@
 mod bdf;
 mod block;
 mod chains;
+mod column;
 mod differences;
+mod dispatch;
 pub mod eigen;
 mod explicit;
 mod frames;
@@ -20,6 +22,7 @@ mod junctions;
 mod newton;
 pub mod so3;
 pub mod spline;
+mod sweep;
 #[cfg(test)]
 mod test_systems;
 pub mod time_table;
@@ -33,6 +36,7 @@ pub use generalised_alpha::{AlphaParameters, GeneralisedAlpha};
 pub use implicit::{ImplicitSystem, MotionState, ResidualSize, TangentWeights};
 pub use integrator::{Integrator, StepOutcome, StepSettings};
 pub use newton::{NewtonFailure, NewtonSettings};
+pub use sweep::Elimination;
 
 /// Three components, global axes unless said otherwise.
 pub type Vector3 = nalgebra::Vector3<f64>;
