@@ -19,6 +19,7 @@ mod generalised_alpha;
 mod implicit;
 mod integrator;
 mod junctions;
+pub mod lanes;
 mod newton;
 pub mod so3;
 pub mod spline;
