@@ -97,10 +97,11 @@ pub(super) fn find(solver: &mut SystemSolver<'_>, state: &mut MotionState) -> Op
         solver.assemble(0.0, state, Some(&weights), &mut residual);
         solver.hold_spins(state, SPIN * free, 0.0);
         let norm = dot(&mode, &forces).sqrt();
-        let load: Vec<Vector6> = forces.iter().map(|f| -f / norm).collect();
-        if solver.solve(&load, &mut mode).is_err() {
+        let mut softest: Vec<Vector6> = forces.iter().map(|f| f / norm).collect();
+        if solver.solve_carefully(&mut softest).is_err() {
             break;
         }
+        mode = softest;
         let forces = inertia_of(solver, state, &mode, &mut residual);
         softness = dot(&mode, &forces).sqrt();
         if !softness.is_finite() {

@@ -3,6 +3,7 @@
 //!
 //! Source: docs/theory/hydrodynamics.md, eqs. (2) to (6).
 
+use catenix_numerics::lanes::{Lane, Mat3, Vec3};
 use catenix_numerics::{Matrix3, Vector3, so3::hat};
 
 /// Drag coefficients of a whole element or body.
@@ -53,30 +54,126 @@ pub struct DragTangent {
     pub moment_spin: Matrix3,
 }
 
-/// Normal parts and the mean speed over the length.
-struct Parts {
-    along: f64,
-    normal: Vector3,
-    spin_along: f64,
-    spin_normal: Vector3,
-    speed: f64,
+/// Drag on one body or several in lanes: normal parts and the mean speed over the length.
+#[derive(Debug, Clone, Copy)]
+pub struct DragKernel<T> {
+    /// The three coefficients of [`DragCoefficients`].
+    coefficients: [T; 3],
+    axis: Vec3<T>,
+    relative_velocity: Vec3<T>,
+    spin: Vec3<T>,
+    along: T,
+    normal: Vec3<T>,
+    spin_along: T,
+    spin_normal: Vec3<T>,
+    speed: T,
 }
 
-impl Parts {
-    #[inline]
-    fn new(c: &DragCoefficients, m: &DragMotion) -> Parts {
-        let along = m.axis.dot(&m.relative_velocity);
-        let normal = m.relative_velocity - m.axis * along;
-        let spin_along = m.axis.dot(&m.spin);
-        let spin_normal = m.spin - m.axis * spin_along;
-        let speed = (normal.norm_squared() + c.radius_squared * spin_normal.norm_squared()).sqrt();
-        Parts {
+/// Derivatives of drag, in lanes; see [`DragTangent`].
+#[derive(Debug, Clone, Copy)]
+pub struct DragDerivatives<T> {
+    /// Force by the relative velocity, the axis and the spin.
+    pub force: [Mat3<T>; 3],
+    /// Moment by the same.
+    pub moment: [Mat3<T>; 3],
+}
+
+impl<T: Lane> DragKernel<T> {
+    /// With the coefficients for normal and axial flow and the squared radius of
+    /// [`DragCoefficients`].
+    #[inline(always)]
+    pub fn new(
+        coefficients: [T; 3],
+        axis: Vec3<T>,
+        relative_velocity: Vec3<T>,
+        spin: Vec3<T>,
+    ) -> Self {
+        let along = axis.dot(relative_velocity);
+        let normal = relative_velocity.minus(along, axis);
+        let spin_along = axis.dot(spin);
+        let spin_normal = spin.minus(spin_along, axis);
+        let turning = coefficients[2] * spin_normal.norm_squared();
+        DragKernel {
+            coefficients,
+            axis,
+            relative_velocity,
+            spin,
             along,
             normal,
             spin_along,
             spin_normal,
-            speed,
+            speed: (normal.norm_squared() + turning).sqrt(),
         }
+    }
+
+    /// Force and moment on the structure.
+    ///
+    /// Source: docs/theory/hydrodynamics.md, eqs. (2) to (4).
+    #[inline(always)]
+    pub fn load(&self) -> [Vec3<T>; 2] {
+        let [normal, axial, radius_squared] = self.coefficients;
+        let normal = normal * self.speed;
+        [
+            (self.normal * normal).plus(axial * self.along.abs() * self.along, self.axis),
+            self.spin_normal * -(normal * radius_squared),
+        ]
+    }
+
+    /// Exact derivatives of [`Self::load`].
+    ///
+    /// Source: docs/theory/hydrodynamics.md, eqs. (5) and (6).
+    #[inline(always)]
+    pub fn derivatives(&self) -> DragDerivatives<T> {
+        let [coefficient, axial, radius_squared] = self.coefficients;
+        let (axis, zero) = (self.axis, self.speed.same(0.0));
+        let normal = coefficient * self.speed;
+        let turning = normal * radius_squared;
+        let steep = (axial + axial) * self.along.abs();
+        // Derivatives of the mean speed; the normal parts are normal to the axis. At no speed at all
+        // it has none that matters.
+        let moving = zero.less(self.speed);
+        let still = T::select(moving, self.speed, zero.same(1.0));
+        let inverse = T::select(moving, zero.same(1.0) / still, zero);
+        let by_velocity = self.normal * inverse;
+        let by_spin = self.spin_normal * (radius_squared * inverse);
+        let by_axis = -(by_velocity * self.along).plus(self.spin_along, by_spin);
+        let force = self.normal * coefficient;
+        let moment = self.spin_normal * -(coefficient * radius_squared);
+        DragDerivatives {
+            force: [
+                (axis * (steep - normal))
+                    .outer(axis)
+                    .plus_diagonal(normal)
+                    .plus_outer(force, by_velocity),
+                (axis * (steep - normal))
+                    .outer(self.relative_velocity)
+                    .plus_diagonal((axial * self.along.abs() - normal) * self.along)
+                    .plus_outer(force, by_axis),
+                force.outer(by_spin),
+            ],
+            moment: [
+                moment.outer(by_velocity),
+                (axis * turning)
+                    .outer(self.spin)
+                    .plus_diagonal(turning * self.spin_along)
+                    .plus_outer(moment, by_axis),
+                (axis * turning)
+                    .outer(axis)
+                    .plus_diagonal(-turning)
+                    .plus_outer(moment, by_spin),
+            ],
+        }
+    }
+}
+
+impl DragKernel<f64> {
+    fn of(c: &DragCoefficients, m: &DragMotion) -> Self {
+        DragKernel::new(
+            [c.normal, c.axial, c.radius_squared],
+            (&m.axis).into(),
+            (&m.relative_velocity).into(),
+            (&m.spin).into(),
+        )
     }
 }
 
@@ -86,10 +183,10 @@ impl Parts {
 /// Source: docs/theory/hydrodynamics.md, eqs. (2) to (4).
 #[inline]
 pub fn drag(c: &DragCoefficients, m: &DragMotion) -> Drag {
-    let p = Parts::new(c, m);
+    let [force, moment] = DragKernel::of(c, m).load();
     Drag {
-        force: p.normal * (c.normal * p.speed) + m.axis * (c.axial * p.along.abs() * p.along),
-        moment: p.spin_normal * (-c.normal * c.radius_squared * p.speed),
+        force: force.into(),
+        moment: moment.into(),
     }
 }
 
@@ -98,35 +195,17 @@ pub fn drag(c: &DragCoefficients, m: &DragMotion) -> Drag {
 /// Source: docs/theory/hydrodynamics.md, eqs. (5) and (6).
 #[inline]
 pub fn drag_tangent(c: &DragCoefficients, m: &DragMotion) -> DragTangent {
-    let p = Parts::new(c, m);
-    let along = |v: &Vector3, dot: f64| Matrix3::identity() * dot + m.axis * v.transpose();
-    let project = Matrix3::identity() - m.axis * m.axis.transpose();
-    let axial = 2.0 * c.axial * p.along.abs();
-    let mut tangent = DragTangent {
-        force_velocity: project * (c.normal * p.speed) + m.axis * m.axis.transpose() * axial,
-        force_axis: along(&m.relative_velocity, p.along) * (-c.normal * p.speed)
-            + Matrix3::identity() * (c.axial * p.along.abs() * p.along)
-            + m.axis * m.relative_velocity.transpose() * axial,
-        force_spin: Matrix3::zeros(),
-        moment_velocity: Matrix3::zeros(),
-        moment_axis: along(&m.spin, p.spin_along) * (c.normal * c.radius_squared * p.speed),
-        moment_spin: project * (-c.normal * c.radius_squared * p.speed),
-    };
-    if p.speed > 0.0 {
-        // Derivatives of the mean speed; the normal parts are normal to the axis.
-        let by_velocity = p.normal / p.speed;
-        let by_spin = p.spin_normal * (c.radius_squared / p.speed);
-        let by_axis = -(by_velocity * p.along + by_spin * p.spin_along);
-        let force = p.normal * c.normal;
-        let moment = p.spin_normal * (-c.normal * c.radius_squared);
-        tangent.force_velocity += force * by_velocity.transpose();
-        tangent.force_axis += force * by_axis.transpose();
-        tangent.force_spin += force * by_spin.transpose();
-        tangent.moment_velocity += moment * by_velocity.transpose();
-        tangent.moment_axis += moment * by_axis.transpose();
-        tangent.moment_spin += moment * by_spin.transpose();
+    let DragDerivatives { force, moment } = DragKernel::of(c, m).derivatives();
+    let [force_velocity, force_axis, force_spin] = force.map(Matrix3::from);
+    let [moment_velocity, moment_axis, moment_spin] = moment.map(Matrix3::from);
+    DragTangent {
+        force_velocity,
+        force_axis,
+        force_spin,
+        moment_velocity,
+        moment_axis,
+        moment_spin,
     }
-    tangent
 }
 
 /// Added mass as a tensor: `normal` across the axis, `axial` along it [kg].

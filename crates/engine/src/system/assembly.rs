@@ -1,10 +1,9 @@
 //! Residual and iteration matrix of the whole system.
 
-use std::ops::Range;
-
 use catenix_numerics::{BlockMatrix, TangentWeights, Vector6};
 
-use super::frames::{self, FrameWeights, frame_motion};
+use super::frame_kernel::add_frames;
+use super::frames::{self, FrameWeights};
 use super::loads;
 use crate::formulation::{Evaluation, Situation};
 
@@ -39,28 +38,4 @@ pub(super) fn assemble(
     }
     let loaded = weights.is_some().then_some(&mut *matrix);
     loads::add_loads(system, load_factors, at.state, residual, loaded);
-}
-
-/// Adds inertia minus loads of rigid frames, and with `weights` their derivatives.
-pub(crate) fn add_frames(
-    at: &Situation<'_>,
-    range: Range<usize>,
-    weights: Option<&TangentWeights<'_>>,
-    residual: &mut [Vector6],
-    matrix: &mut BlockMatrix,
-) {
-    let first = range.start;
-    let frames = at.system.frames[range.clone()].iter();
-    for (index, (frame, residual)) in frames.zip(&mut residual[range]).enumerate() {
-        let k = first + index;
-        let own = weights.map(|weights| FrameWeights::of(weights, k));
-        let tangent = own.as_ref().map(|own| (&mut matrix.diagonal[k], own));
-        frames::add_frame(
-            frame,
-            &frame_motion(at.state, k),
-            &at.sea,
-            residual,
-            tangent,
-        );
-    }
 }

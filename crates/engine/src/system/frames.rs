@@ -5,7 +5,6 @@ use catenix_model::Seabed;
 use catenix_numerics::{Block6, Matrix3, MotionState, TangentWeights, Vector3, Vector6, so3::hat};
 
 use super::{Frame, FrameLump};
-use crate::body::inertia::{Tensors, inertia_force, inertia_tangent};
 use crate::body::lump::LumpMotion;
 use crate::contact::seabed;
 use crate::element::dem::pair::six;
@@ -131,7 +130,6 @@ struct Place {
     axis: Vector3,
     wet: Submergence,
     relative_velocity: Vector3,
-    current_slope: Vector3,
 }
 
 impl Place {
@@ -139,12 +137,11 @@ impl Place {
     fn new(frame: &Frame, m: &FrameMotion, sea: &Sea<'_>) -> Place {
         let axis = m.rotation * frame.axis;
         let wet = Submergence::new(m.position.z, axis.z, frame.length, frame.diameter);
-        let (water, current_slope) = sea.current.at(m.position.z, sea.current_factor);
+        let (water, _) = sea.current.at(m.position.z, sea.current_factor);
         Place {
             axis,
             wet,
             relative_velocity: water - m.velocity,
-            current_slope,
         }
     }
 
@@ -155,122 +152,13 @@ impl Place {
             spin: *spin,
         }
     }
-
-    fn tensors(&self, frame: &Frame, rotation: &Matrix3) -> Tensors {
-        let share = self.wet.share;
-        let structure = rotation * Matrix3::from_diagonal(&frame.inertia) * rotation.transpose();
-        let added = morison::added_mass(&self.axis, frame.added_normal, frame.added_axial);
-        Tensors {
-            mass: Matrix3::identity() * frame.mass + added * share,
-            inertia: structure + morison::added_mass(&self.axis, frame.added_inertia, 0.0) * share,
-        }
-    }
 }
 
-/// Adds inertia minus loads of a frame to its residual and, with `weights`, their derivatives to
-/// its diagonal block.
-pub(crate) fn add_frame(
-    frame: &Frame,
-    m: &FrameMotion,
-    sea: &Sea<'_>,
-    residual: &mut Vector6,
-    tangent: Option<(&mut Block6, &FrameWeights)>,
-) {
-    let place = Place::new(frame, m, sea);
-    let share = place.wet.share;
-    let drag_motion = place.drag_motion(&m.spin);
-    let drag = morison::drag(&frame.drag, &drag_motion);
-    let tensors = place.tensors(frame, &m.rotation);
-    let (inertia, inertia_moment) =
-        inertia_force(&tensors, &m.spin, &m.acceleration, &m.angular_acceleration);
-    let lift = Vector3::z() * (frame.buoyancy * share - frame.weight);
-    let arm = m.rotation * frame.buoyancy_arm;
-    let buoyancy = Vector3::z() * (frame.buoyancy * share);
-    let contact = sea
-        .seabed
-        .filter(|_| frame.seabed_length > 0.0)
-        .and_then(|seabed| touch(seabed, frame, m, sea.depth));
-    let mut force = inertia - drag.force * share - lift;
-    if let Some(contact) = &contact {
-        force -= contact.force;
-    }
-    let moment = inertia_moment - drag.moment * share - arm.cross(&buoyancy);
-    *residual += six(&force, &moment);
-
-    let Some((block, weights)) = tangent else {
-        return;
-    };
-    let mut add = Collector {
-        block,
-        weights: *weights,
-    };
-    let t = morison::drag_tangent(&frame.drag, &drag_motion);
-    let by_height = place.current_slope * Vector3::z().transpose();
-    add.position(0, &(t.force_velocity * by_height * -share));
-    add.position(1, &(t.moment_velocity * by_height * -share));
-    add.rotation(
-        0,
-        &(morison::by_rotation(&t.force_axis, &place.axis) * -share),
-    );
-    add.rotation(
-        1,
-        &(morison::by_rotation(&t.moment_axis, &place.axis) * -share),
-    );
-    add.velocity(0, &(t.force_velocity * share));
-    add.velocity(1, &(t.moment_velocity * share));
-    add.spin(0, &(t.force_spin * -share));
-    add.spin(1, &(t.moment_spin * -share));
-
-    let i = inertia_tangent(&tensors, &m.spin, &m.acceleration, &m.angular_acceleration);
-    add.rotation(0, &i.force_rotation);
-    add.rotation(1, &i.moment_rotation);
-    add.spin(1, &i.moment_spin);
-    add.acceleration(0, &tensors.mass);
-    add.angular(1, &tensors.inertia);
-
-    if frame.buoyancy_arm != Vector3::zeros() {
-        add.rotation(1, &-(hat(&buoyancy) * hat(&arm)));
-    }
-    if place.wet.by_height != 0.0 {
-        add_waterline(frame, m, &place, &drag, &arm, &mut add);
-    }
-    if let Some(contact) = &contact {
-        add.position(0, &-(contact.by_height * Vector3::z().transpose()));
-        add.velocity(0, &-contact.by_velocity);
-    }
-}
-
-fn touch(seabed: &Seabed, frame: &Frame, m: &FrameMotion, depth: f64) -> Option<seabed::Contact> {
-    seabed::contact(
-        seabed,
-        frame.seabed_length,
-        m.position.z + depth,
-        &m.velocity,
-    )
-}
-
-/// Derivatives through the share of the frame that is under water.
-fn add_waterline(
-    frame: &Frame,
-    m: &FrameMotion,
-    place: &Place,
-    drag: &morison::Drag,
-    arm: &Vector3,
-    add: &mut Collector<'_>,
-) {
-    let added = morison::added_mass(&place.axis, frame.added_normal, frame.added_axial);
-    let added_inertia = morison::added_mass(&place.axis, frame.added_inertia, 0.0);
-    let up = Vector3::z() * frame.buoyancy;
-    let force = added * m.acceleration - drag.force - up;
-    let moment = added_inertia * m.angular_acceleration + m.spin.cross(&(added_inertia * m.spin))
-        - drag.moment
-        - arm.cross(&up);
-    let by_height = Vector3::z().transpose() * place.wet.by_height;
-    let by_rotation = Vector3::z().transpose() * -hat(&place.axis) * place.wet.by_slope;
-    add.position(0, &(force * by_height));
-    add.position(1, &(moment * by_height));
-    add.rotation(0, &(force * by_rotation));
-    add.rotation(1, &(moment * by_rotation));
+/// Contact of a frame with the seabed, if it touches it.
+pub(super) fn touch(sea: &Sea<'_>, frame: &Frame, m: &FrameMotion) -> Option<seabed::Contact> {
+    let seabed = sea.seabed.filter(|_| frame.seabed_length > 0.0)?;
+    let height = m.position.z + sea.depth;
+    seabed::contact(seabed, frame.seabed_length, height, &m.velocity)
 }
 
 fn lump_motion(lump: &FrameLump, m: &FrameMotion, sea: &Sea<'_>) -> (LumpMotion, Vector3) {
@@ -361,10 +249,13 @@ pub(crate) fn frame_mass(frame: &Frame, m: &FrameMotion, sea: &Sea<'_>, in_water
     if !in_water {
         place.wet.share = 0.0;
     }
-    let tensors = place.tensors(frame, &m.rotation);
+    let share = place.wet.share;
+    let structure = m.rotation * Matrix3::from_diagonal(&frame.inertia) * m.rotation.transpose();
+    let added = morison::added_mass(&place.axis, frame.added_normal, frame.added_axial);
+    let added_inertia = morison::added_mass(&place.axis, frame.added_inertia, 0.0);
     let mut mass = Block6::ZERO;
-    mass.add_quadrant(0, 0, &tensors.mass);
-    mass.add_quadrant(1, 1, &tensors.inertia);
+    mass.add_quadrant(0, 0, &(Matrix3::identity() * frame.mass + added * share));
+    mass.add_quadrant(1, 1, &(structure + added_inertia * share));
     mass
 }
 
@@ -416,14 +307,12 @@ pub(crate) fn frame_energy(
         buoyancy: up.dot(&(m.velocity + m.spin.cross(&arm))),
         seabed_damping: 0.0,
     };
-    if let Some(seabed) = sea.seabed.filter(|_| frame.seabed_length > 0.0)
-        && let Some(contact) = touch(seabed, frame, m, sea.depth)
-    {
+    if let Some(contact) = touch(sea, frame, m) {
         let still = FrameMotion {
             velocity: Vector3::zeros(),
             ..*m
         };
-        let spring = touch(seabed, frame, &still, sea.depth);
+        let spring = touch(sea, frame, &still);
         let spring = spring.map_or_else(Vector3::zeros, |contact| contact.force);
         potential += contact.energy;
         powers.seabed_damping = (contact.force - spring).dot(&m.velocity);

@@ -7,6 +7,7 @@ pub(crate) mod assembly;
 mod balance;
 mod build;
 mod energy;
+pub(crate) mod frame_kernel;
 pub(crate) mod frames;
 mod linearised;
 mod loads;
@@ -15,7 +16,7 @@ mod solver;
 mod view;
 
 #[cfg(test)]
-mod tangent_test;
+pub(crate) mod tangent_test;
 
 use std::ops::Range;
 use std::sync::Arc;

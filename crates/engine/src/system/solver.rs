@@ -1,8 +1,8 @@
 //! The system as the numerics see it: residual, matrix, increment.
 
 use catenix_numerics::{
-    Block6, BlockLu, BlockMatrix, ExplicitSystem, Factorisation, ImplicitSystem, Matrix3,
-    MotionState, ResidualSize, TangentWeights, Vector3, Vector6,
+    Block6, BlockLu, BlockMatrix, Elimination, ExplicitSystem, Factorisation, ImplicitSystem,
+    Matrix3, MotionState, ResidualSize, TangentWeights, Vector3, Vector6,
 };
 
 use super::System;
@@ -36,7 +36,7 @@ pub struct SystemSolver<'a> {
     pub(super) load_factors: Vec<f64>,
     pub(super) lines: Box<dyn Evaluation>,
     pub(super) matrix: BlockMatrix,
-    factors: Factorisation,
+    factors: Elimination,
     factorisations: usize,
     explicit_room: Option<Box<ExplicitRoom>>,
 }
@@ -83,7 +83,7 @@ impl<'a> SystemSolver<'a> {
             },
             vessels,
             matrix: BlockMatrix::zeros(&system.topology),
-            factors: Factorisation::new(&system.topology),
+            factors: Elimination::new(&system.topology),
             factorisations: 0,
             explicit_room: None,
         }
@@ -119,9 +119,31 @@ impl<'a> SystemSolver<'a> {
         self.factors.solve(&self.system.topology, x);
     }
 
+    /// x <- S^-1 x with the matrix of the last assembly, and with rows exchanged: for matrices that
+    /// are nearly singular on purpose.
+    ///
+    /// # Errors
+    /// The frame whose pivot is singular.
+    pub(crate) fn solve_carefully(&mut self, x: &mut [Vector6]) -> Result<(), usize> {
+        let topology = &self.system.topology;
+        let mut factors = Factorisation::new(topology);
+        self.factorisations += 1;
+        factors
+            .factorise(topology, &self.matrix)
+            .map_err(|error| error.frame)?;
+        factors.solve(topology, x);
+        Ok(())
+    }
+
     /// Number of negative eigenvalues of the last factorised matrix, if it is symmetric.
     pub(crate) fn negative_eigenvalues(&self) -> usize {
-        self.factors.negative_eigenvalues()
+        let topology = &self.system.topology;
+        let mut factors = Factorisation::new(topology);
+        // A singular matrix has shown itself before, when it was solved with.
+        match factors.factorise(topology, &self.matrix) {
+            Ok(()) => factors.negative_eigenvalues(),
+            Err(_) => 0,
+        }
     }
 
     /// Factorisations done so far.
@@ -241,12 +263,9 @@ impl ImplicitSystem for SystemSolver<'_> {
         let topology = &self.system.topology;
         self.factorisations += 1;
         self.factors
-            .factorise(topology, &self.matrix)
+            .factorise_and_solve(topology, &self.matrix, residual, increment)
             .map_err(|error| error.frame)?;
-        for (x, r) in increment.iter_mut().zip(residual) {
-            *x = -r;
-        }
-        self.factors.solve(topology, increment);
+        increment.iter_mut().for_each(|x| *x = -*x);
         Ok(())
     }
 

@@ -7,6 +7,7 @@ use catenix_model::{FormulationKind, LoadPlace, Model, NaturalShape};
 use catenix_numerics::{ImplicitSystem, Matrix3, MotionState, TangentWeights, Vector6, so3};
 
 use super::{System, SystemSolver};
+use crate::formulation::Situation;
 
 /// Every kind of load and connection in one model: surface, seabed, sheared current, lumps,
 /// unlike neighbours, all joints, sliding ends, a loop over two bodies, structural damping, shear
@@ -196,6 +197,26 @@ fn iteration_matrix_matches_finite_differences() {
 fn iteration_matrix_of_lumped_mass_matches_finite_differences() {
     // Each line has an idle point at most.
     check(&everything_lumped(), 9);
+}
+
+/// Calls `use_it` for the system with everything in it, out of balance and moving.
+pub(crate) fn moving_system(use_it: impl Fn(&Situation<'_>, &TangentWeights<'_>)) {
+    let system = System::new(&everything()).unwrap();
+    let n = system.frame_count();
+    let mut state = MotionState::at_rest(system.first_shape().clone());
+    state.configuration.retract(&noisy(n, 1, 0.05, 0.1));
+    state.configuration.position[system.lines[1].frames().end - 1].z = -12.05;
+    state.velocity = noisy(n, 1000, 0.8, 0.3);
+    state.acceleration = noisy(n, 2000, 2.0, 1.0);
+    let turn = |d: &Vector6| so3::left_jacobian_inverse(&d.fixed_rows::<3>(3).into());
+    let turns: Vec<Matrix3> = noisy(n, 3000, 0.0, 0.2).iter().map(turn).collect();
+    let weights = TangentWeights {
+        velocity: 4.0,
+        acceleration: 30.0,
+        rotation: Some(&turns),
+    };
+    let solver = SystemSolver::moving(&system);
+    use_it(&solver.situation(0.7, &state), &weights);
 }
 
 /// Compares all columns but those of points that move nothing, of which there may be so many.

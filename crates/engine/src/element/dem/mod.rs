@@ -7,6 +7,7 @@ pub mod connector;
 pub mod joint;
 mod law;
 pub mod pair;
+pub mod pair_kernel;
 pub mod stiffness;
 
 #[cfg(test)]

@@ -5,7 +5,6 @@
 use catenix_model::{LineType, NaturalShape};
 use catenix_numerics::{Matrix3, Vector3, so3};
 
-use super::connector::Stress;
 use super::law::{BendLaw, GeneralLaw};
 use super::pair::Side;
 use crate::element::curve::Curve;
@@ -217,34 +216,6 @@ impl ConnectorStiffness {
     pub fn stiffest(&self) -> f64 {
         let axial = self.axial_curve().map_or(self.axial, Curve::largest_slope);
         axial.max(self.shear)
-    }
-
-    /// Damping stress for the rates of gap and bend, with the mean axis of the connector.
-    ///
-    /// Source: docs/theory/dem.md, eq. (9).
-    #[inline]
-    pub(super) fn damping_stress(
-        &self,
-        axis: &Vector3,
-        sides: [&Side; 2],
-        gap_rate: &Vector3,
-        bend_rate: &Vector3,
-    ) -> Stress {
-        let force = gap_rate * self.shear + axis * ((self.axial - self.shear) * axis.dot(gap_rate));
-        let moment = match &self.general {
-            None => {
-                bend_rate * self.bending
-                    + axis * ((self.torsion - self.bending) * axis.dot(bend_rate))
-            }
-            Some(law) => {
-                let [a, b] = self.turned_stiffness(law, sides);
-                (a + b) * bend_rate * 0.5
-            }
-        };
-        Stress {
-            force: force * self.damping,
-            moment: moment * self.damping,
-        }
     }
 
     /// Stiffness against rotations in the axes of each side, turned to global axes.

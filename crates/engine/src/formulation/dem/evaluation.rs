@@ -5,11 +5,12 @@ use std::sync::Arc;
 use catenix_numerics::{BlockMatrix, Matrix3, TangentWeights, Vector3, Vector6};
 
 use super::super::{Evaluation, NodeResult, Situation};
+use super::links::Links;
 use super::pairs::{EvaluatedPair, scatter};
 use super::{ConnectorLaw, Dem, element_end, nodes};
 use crate::element::dem::connector::Prediction;
 use crate::element::dem::pair::RateWeights;
-use crate::system::assembly;
+use crate::system::frame_kernel::add_frames;
 use crate::system::frames::{self, frame_motion};
 use crate::system::{Carrier, EnergyTerms, Momentum, Mount, System};
 
@@ -17,20 +18,42 @@ use crate::system::{Carrier, EnergyTerms, Momentum, Mount, System};
 #[derive(Debug, Clone)]
 pub(super) struct DemEvaluation {
     pub(super) dem: Arc<Dem>,
-    pub(super) pairs: Vec<EvaluatedPair>,
-    predicted: Vec<Prediction>,
+    /// The connectors between elements, several at a time.
+    links: Links,
+    /// All others, one by one.
+    others: Vec<Other>,
     has_prediction: bool,
+}
+
+/// A connector that is no link.
+#[derive(Debug, Clone)]
+struct Other {
+    /// Its index among all connectors.
+    index: usize,
+    pair: EvaluatedPair,
+    predicted: Prediction,
 }
 
 impl DemEvaluation {
     pub(super) fn new(dem: Arc<Dem>, at: &Situation<'_>) -> DemEvaluation {
-        let new = |connector| EvaluatedPair::new(connector, at);
+        let (links, are_links) = Links::among(&dem.connectors);
+        let others = (0..dem.connectors.len()).filter(|&index| !are_links[index]);
+        let other = |index| Other {
+            index,
+            pair: EvaluatedPair::new(&dem.connectors[index], at),
+            predicted: Prediction::default(),
+        };
         DemEvaluation {
-            pairs: dem.connectors.iter().map(new).collect(),
-            predicted: vec![Prediction::default(); dem.connectors.len()],
+            links,
+            others: others.map(other).collect(),
             has_prediction: false,
             dem,
         }
+    }
+
+    /// A connector at the state of `at`.
+    pub(super) fn pair(&self, at: &Situation<'_>, index: usize) -> EvaluatedPair {
+        EvaluatedPair::new(&self.dem.connectors[index], at)
     }
 }
 
@@ -47,8 +70,10 @@ impl Evaluation for DemEvaluation {
         matrix: &mut BlockMatrix,
     ) {
         let elements = 0..at.system.body_frame(0);
-        assembly::add_frames(at, elements, weights, residual, matrix);
-        for (index, connector) in self.dem.connectors.iter().enumerate() {
+        add_frames(at, elements, weights, residual, matrix);
+        self.links.assemble(at, weights, residual, matrix);
+        for other in &mut self.others {
+            let connector = &self.dem.connectors[other.index];
             let mut pair = EvaluatedPair::new(connector, at);
             let forces = pair.forces();
             for (mount, force) in [
@@ -68,22 +93,24 @@ impl Evaluation for DemEvaluation {
                     velocity: weights.velocity,
                     rotation: [side_turn(&connector.first), side_turn(&connector.second)],
                 };
-                let prediction = self.has_prediction.then(|| &self.predicted[index]);
+                let prediction = self.has_prediction.then_some(&other.predicted);
                 let tangent = pair.tangent(&connector.law, prediction, &rates);
                 scatter(&at.system.topology, connector, &tangent, matrix);
             }
-            self.pairs[index] = pair;
+            other.pair = pair;
         }
     }
 
     fn begin(&mut self) {
         self.has_prediction = false;
+        self.links.begin();
     }
 
     fn moving(&mut self, _: &System, increment: &[Vector6]) {
-        let pairs = self.pairs.iter().zip(&self.dem.connectors);
-        for (prediction, (pair, connector)) in self.predicted.iter_mut().zip(pairs) {
-            *prediction = pair.predicted(connector, increment);
+        self.links.moving(increment);
+        for other in &mut self.others {
+            let connector = &self.dem.connectors[other.index];
+            other.predicted = other.pair.predicted(connector, increment);
         }
         self.has_prediction = true;
     }
@@ -102,7 +129,11 @@ impl Evaluation for DemEvaluation {
             let motion = frame_motion(at.state, k);
             terms.add(frames::frame_energy(&system.frames[k], &motion, &at.sea));
         }
-        for (pair, connector) in self.pairs.iter().zip(&self.dem.connectors) {
+        let [elastic, damping] = self.links.energy();
+        terms.elastic += elastic;
+        terms.structural_damping += damping;
+        for Other { index, pair, .. } in &self.others {
+            let connector = &self.dem.connectors[*index];
             terms.elastic += pair.energy(&connector.law);
             terms.structural_damping += pair.damping_power();
             let forces = pair.forces();

@@ -3,6 +3,7 @@
 
 mod ends;
 mod evaluation;
+mod links;
 mod natural;
 mod nodes;
 mod pairs;

@@ -22,7 +22,7 @@ pub(super) fn end_load(
     let Some(index) = own.dem.nodes[line][node] else {
         return Vector6::zeros();
     };
-    let (connector, pair) = (&own.dem.connectors[index], &own.pairs[index]);
+    let (connector, pair) = (&own.dem.connectors[index], own.pair(at, index));
     let forces = pair.forces();
     let support_first = matches!(connector.law, ConnectorLaw::Joint(_)) || end == 0;
     let (load, side) = if support_first {
@@ -49,7 +49,7 @@ pub(super) fn node(
     let Some(index) = own.dem.nodes[line][node] else {
         return free_end(at, layout, node);
     };
-    let pair = &own.pairs[index];
+    let pair = &own.pair(at, index);
     let law = &own.dem.connectors[index].law;
     let (mut result, elastic_moment) = match &pair.state {
         PairState::Beam(state) => {
