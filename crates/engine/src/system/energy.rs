@@ -2,7 +2,8 @@
 
 use catenix_numerics::MotionState;
 
-use super::frames::{self, LoadPowers, frame_motion};
+use super::frame_kernel::frame_energies;
+use super::frames::{self, LoadPowers};
 use super::loads;
 use super::solver::SystemSolver;
 
@@ -67,14 +68,8 @@ impl SystemSolver<'_> {
         let at = self.situation(time, state);
         let mut terms = EnergyTerms::default();
         self.lines.add_energy(&at, &mut terms);
-        for k in self.system.body_frame(0)..self.system.frames.len() {
-            let motion = frame_motion(state, k);
-            terms.add(frames::frame_energy(
-                &self.system.frames[k],
-                &motion,
-                &at.sea,
-            ));
-        }
+        let bodies = self.system.body_frame(0)..self.system.frames.len();
+        terms.add(frame_energies(&at, bodies));
         for lump in &self.system.lumps {
             let motion = frames::lump_carrier(state, lump);
             terms.add(frames::lump_energy(lump, &motion, &at.sea));

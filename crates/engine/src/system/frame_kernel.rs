@@ -9,7 +9,7 @@ use catenix_numerics::lanes::{Kernel, Lane, MOST_LANES, Mat3, Row, Vec3, vectori
 use catenix_numerics::{BlockMatrix, TangentWeights, Vector3, Vector6};
 
 use super::Frame;
-use super::frames::{frame_motion, touch};
+use super::frames::{FrameMotion, LoadPowers, frame_motion, touch};
 use crate::body::inertia::{BodyMotion, Tensors, inertia_force, inertia_tangent};
 use crate::formulation::Situation;
 use crate::hydro::morison::DragKernel;
@@ -41,6 +41,86 @@ pub(super) struct Frames<'a> {
     pub weights: Option<&'a TangentWeights<'a>>,
     pub residual: &'a mut [Vector6],
     pub matrix: &'a mut BlockMatrix,
+}
+
+/// Kinetic and potential energy of rigid frames [J], and the powers of their loads.
+pub(crate) fn frame_energies(at: &Situation<'_>, range: Range<usize>) -> (f64, f64, LoadPowers) {
+    let [twice_kinetic, drag, added_mass, buoyancy] = vectorised(Energies {
+        at,
+        range: range.clone(),
+    });
+    let mut potential = 0.0;
+    let mut powers = LoadPowers {
+        drag,
+        added_mass,
+        buoyancy,
+        seabed_damping: 0.0,
+    };
+    for k in range {
+        let frame = &at.system.frames[k];
+        let m = frame_motion(at.state, k);
+        potential += frame.weight * m.position.z;
+        let Some(contact) = touch(&at.sea, frame, &m) else {
+            continue;
+        };
+        let still = FrameMotion {
+            velocity: Vector3::zeros(),
+            ..m
+        };
+        let spring = touch(&at.sea, frame, &still);
+        let spring = spring.map_or_else(Vector3::zeros, |contact| contact.force);
+        potential += contact.energy;
+        powers.seabed_damping += (contact.force - spring).dot(&m.velocity);
+    }
+    (0.5 * twice_kinetic, potential, powers)
+}
+
+struct Energies<'a> {
+    at: &'a Situation<'a>,
+    range: Range<usize>,
+}
+
+impl Kernel for Energies<'_> {
+    type Output = [f64; 4];
+
+    /// Twice the kinetic energy, and the powers of drag, added mass and buoyancy.
+    #[inline(always)]
+    fn run<T: Lane>(self, token: T::Token) -> [f64; 4] {
+        let mut rows = NO_ROWS;
+        let mut sums = [0.0; 4];
+        let mut first = self.range.start;
+        while first < self.range.end {
+            let count = (self.range.end - first).min(T::COUNT);
+            for lane in 0..T::COUNT {
+                rows.fill(lane, self.at, first + lane.min(count - 1), None);
+            }
+            let loads = Loads::<T>::new(token, &rows);
+            let mut each = [NO_ROW; 4];
+            let velocity = Vec3::<T>::read(token, &rows.motion);
+            let mass: T = T::read(token, &rows.plain[0]);
+            let (share, motion) = (loads.share, &loads.motion);
+            let turning = loads.tensors.inertia.times(motion.spin)
+                - loads.added.inertia.times(motion.spin) * share;
+            let kinetic: T = mass * velocity.norm_squared() + motion.spin.dot(turning);
+            kinetic.write(&mut each[0]);
+            let [force, moment] = loads.drag_load;
+            (share * (force.dot(velocity) + moment.dot(motion.spin))).write(&mut each[1]);
+            let carried = velocity.dot(loads.added.mass.times(motion.acceleration))
+                + motion
+                    .spin
+                    .dot(loads.added.inertia.times(motion.angular_acceleration));
+            (-(share * carried)).write(&mut each[2]);
+            let rise = velocity.z + motion.spin.cross(loads.arm).z;
+            (loads.buoyancy * share * rise).write(&mut each[3]);
+            for (sum, row) in sums.iter_mut().zip(&each) {
+                for value in &row[..count] {
+                    *sum += value;
+                }
+            }
+            first += count;
+        }
+        sums
+    }
 }
 
 /// Everything that frames are computed from, one row per number.
@@ -215,9 +295,8 @@ fn add_contact(
     let Some(contact) = touch(&at.sea, frame, &frame_motion(at.state, k)) else {
         return;
     };
-    for d in 0..3 {
-        residual[k][d] -= contact.force[d];
-    }
+    let mut force = residual[k].fixed_rows_mut::<3>(0);
+    force -= contact.force;
     if let Some(weights) = weights {
         let block = &mut matrix.diagonal[k];
         let by_height = contact.by_height * Vector3::z().transpose();

@@ -9,7 +9,7 @@ use crate::body::lump::LumpMotion;
 use crate::contact::seabed;
 use crate::element::dem::pair::six;
 use crate::hydro::current::CurrentField;
-use crate::hydro::morison::{self, DragMotion};
+use crate::hydro::morison;
 use crate::hydro::submergence::Submergence;
 
 /// The sea at one time.
@@ -125,35 +125,6 @@ impl Collector<'_> {
     }
 }
 
-/// What frame loads need of a frame's place: axis, submergence, water velocity.
-struct Place {
-    axis: Vector3,
-    wet: Submergence,
-    relative_velocity: Vector3,
-}
-
-impl Place {
-    #[inline]
-    fn new(frame: &Frame, m: &FrameMotion, sea: &Sea<'_>) -> Place {
-        let axis = m.rotation * frame.axis;
-        let wet = Submergence::new(m.position.z, axis.z, frame.length, frame.diameter);
-        let (water, _) = sea.current.at(m.position.z, sea.current_factor);
-        Place {
-            axis,
-            wet,
-            relative_velocity: water - m.velocity,
-        }
-    }
-
-    fn drag_motion(&self, spin: &Vector3) -> DragMotion {
-        DragMotion {
-            axis: self.axis,
-            relative_velocity: self.relative_velocity,
-            spin: *spin,
-        }
-    }
-}
-
 /// Contact of a frame with the seabed, if it touches it.
 pub(super) fn touch(sea: &Sea<'_>, frame: &Frame, m: &FrameMotion) -> Option<seabed::Contact> {
     let seabed = sea.seabed.filter(|_| frame.seabed_length > 0.0)?;
@@ -244,15 +215,15 @@ pub(crate) fn add_lump(
 }
 
 /// Mass matrix of a frame at its place: the structure, and the added mass if `in_water`.
-pub(crate) fn frame_mass(frame: &Frame, m: &FrameMotion, sea: &Sea<'_>, in_water: bool) -> Block6 {
-    let mut place = Place::new(frame, m, sea);
-    if !in_water {
-        place.wet.share = 0.0;
-    }
-    let share = place.wet.share;
+pub(crate) fn frame_mass(frame: &Frame, m: &FrameMotion, in_water: bool) -> Block6 {
+    let axis = m.rotation * frame.axis;
+    let share = match in_water {
+        true => Submergence::new(m.position.z, axis.z, frame.length, frame.diameter).share,
+        false => 0.0,
+    };
     let structure = m.rotation * Matrix3::from_diagonal(&frame.inertia) * m.rotation.transpose();
-    let added = morison::added_mass(&place.axis, frame.added_normal, frame.added_axial);
-    let added_inertia = morison::added_mass(&place.axis, frame.added_inertia, 0.0);
+    let added = morison::added_mass(&axis, frame.added_normal, frame.added_axial);
+    let added_inertia = morison::added_mass(&axis, frame.added_inertia, 0.0);
     let mut mass = Block6::ZERO;
     mass.add_quadrant(0, 0, &(Matrix3::identity() * frame.mass + added * share));
     mass.add_quadrant(1, 1, &(structure + added_inertia * share));
@@ -282,46 +253,8 @@ pub(crate) fn lump_mass(
     mass
 }
 
-/// Kinetic, gravity and contact energy of a frame and the powers of its loads.
-pub(crate) fn frame_energy(
-    frame: &Frame,
-    m: &FrameMotion,
-    sea: &Sea<'_>,
-) -> (f64, f64, LoadPowers) {
-    let place = Place::new(frame, m, sea);
-    let share = place.wet.share;
-    let drag_motion = place.drag_motion(&m.spin);
-    let drag = morison::drag(&frame.drag, &drag_motion);
-    let structure = m.rotation * Matrix3::from_diagonal(&frame.inertia) * m.rotation.transpose();
-    let kinetic =
-        0.5 * frame.mass * m.velocity.norm_squared() + 0.5 * m.spin.dot(&(structure * m.spin));
-    let added = morison::added_mass(&place.axis, frame.added_normal, frame.added_axial) * share;
-    let added_inertia = morison::added_mass(&place.axis, frame.added_inertia, 0.0) * share;
-    let up = Vector3::z() * (frame.buoyancy * share);
-    let arm = m.rotation * frame.buoyancy_arm;
-    let mut potential = frame.weight * m.position.z;
-    let mut powers = LoadPowers {
-        drag: share * (drag.force.dot(&m.velocity) + drag.moment.dot(&m.spin)),
-        added_mass: -m.velocity.dot(&(added * m.acceleration))
-            - m.spin.dot(&(added_inertia * m.angular_acceleration)),
-        buoyancy: up.dot(&(m.velocity + m.spin.cross(&arm))),
-        seabed_damping: 0.0,
-    };
-    if let Some(contact) = touch(sea, frame, m) {
-        let still = FrameMotion {
-            velocity: Vector3::zeros(),
-            ..*m
-        };
-        let spring = touch(sea, frame, &still);
-        let spring = spring.map_or_else(Vector3::zeros, |contact| contact.force);
-        potential += contact.energy;
-        powers.seabed_damping = (contact.force - spring).dot(&m.velocity);
-    }
-    (kinetic, potential, powers)
-}
-
-/// The same for a lump; its own mass is structure, its added mass is not told apart and counts as
-/// structure too.
+/// Kinetic and gravity energy of a lump and the powers of its loads; its own mass is structure, its
+/// added mass is not told apart and counts as structure too.
 pub(crate) fn lump_energy(
     lump: &FrameLump,
     m: &FrameMotion,

@@ -45,7 +45,7 @@ impl SystemSolver<'_> {
         self.lines.add_mass(at, in_water, mass);
         for k in system.body_frame(0)..system.frames.len() {
             let motion = frame_motion(state, k);
-            let own = frames::frame_mass(&system.frames[k], &motion, &at.sea, in_water);
+            let own = frames::frame_mass(&system.frames[k], &motion, in_water);
             mass.diagonal[k] = mass.diagonal[k].plus(1.0, &own);
         }
         for lump in &system.lumps {

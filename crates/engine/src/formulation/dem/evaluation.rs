@@ -10,7 +10,7 @@ use super::pairs::{EvaluatedPair, scatter};
 use super::{ConnectorLaw, Dem, element_end, nodes};
 use crate::element::dem::connector::Prediction;
 use crate::element::dem::pair::RateWeights;
-use crate::system::frame_kernel::add_frames;
+use crate::system::frame_kernel::{add_frames, frame_energies};
 use crate::system::frames::{self, frame_motion};
 use crate::system::{Carrier, EnergyTerms, Momentum, Mount, System};
 
@@ -124,11 +124,7 @@ impl Evaluation for DemEvaluation {
     }
 
     fn add_energy(&self, at: &Situation<'_>, terms: &mut EnergyTerms) {
-        let system = at.system;
-        for k in 0..system.body_frame(0) {
-            let motion = frame_motion(at.state, k);
-            terms.add(frames::frame_energy(&system.frames[k], &motion, &at.sea));
-        }
+        terms.add(frame_energies(at, 0..at.system.body_frame(0)));
         let [elastic, damping] = self.links.energy();
         terms.elastic += elastic;
         terms.structural_damping += damping;
@@ -159,7 +155,7 @@ impl Evaluation for DemEvaluation {
     fn add_mass(&self, at: &Situation<'_>, in_water: bool, mass: &mut BlockMatrix) {
         for k in 0..at.system.body_frame(0) {
             let motion = frame_motion(at.state, k);
-            let own = frames::frame_mass(&at.system.frames[k], &motion, &at.sea, in_water);
+            let own = frames::frame_mass(&at.system.frames[k], &motion, in_water);
             mass.diagonal[k] = mass.diagonal[k].plus(1.0, &own);
         }
     }

@@ -243,8 +243,7 @@ impl Kernel for Assembly<'_> {
             force.write(&mut forces);
             first_moment.write(&mut forces[3..]);
             second_moment.write(&mut forces[6..]);
-            for lane in 0..batch.count {
-                let k = batch.frame[lane];
+            for (lane, &k) in batch.frame[..batch.count].iter().enumerate() {
                 for d in 0..3 {
                     self.residual[k][d] -= forces[d][lane];
                     self.residual[k][d + 3] += forces[d + 3][lane];
@@ -452,7 +451,7 @@ mod tests {
             law: ConnectorLaw::Beam(ConnectorStiffness {
                 axial: 3e5 + 1e4 * k as f64,
                 shear: 8e5,
-                torsion: if k % 5 == 0 { 0.0 } else { 4e4 },
+                torsion: if k.is_multiple_of(5) { 0.0 } else { 4e4 },
                 bending: 6e4 - 1e3 * k as f64,
                 shift: 0.0,
                 damping: if k < frames / 2 { 0.04 } else { 0.0 },

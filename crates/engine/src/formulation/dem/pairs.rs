@@ -13,6 +13,10 @@ use crate::system::{Carrier, Mount};
 
 /// A connector of either kind at one configuration.
 #[derive(Debug, Clone, Copy)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "few are kept, and a box would allocate in every evaluation"
+)]
 pub(super) enum PairState {
     Beam(ConnectorState),
     Joint(JointState),
