@@ -125,6 +125,9 @@ fn mode_report((number, mode): (usize, &Mode)) -> ModeReport {
     let (moves_most, arc_length_m) = match &mode.largest_at {
         FrameOwner::Element {
             line, arc_length_m, ..
+        }
+        | FrameOwner::Node {
+            line, arc_length_m, ..
         } => (line.clone(), Some(*arc_length_m)),
         FrameOwner::Body(name) => (name.clone(), None),
     };

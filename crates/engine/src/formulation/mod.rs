@@ -15,6 +15,8 @@
 //! shared. Force kernels are not: otherwise the agreement of two formulations would prove nothing.
 
 pub(crate) mod dem;
+pub(crate) mod directions;
+pub(crate) mod fem;
 pub(crate) mod lumped;
 
 use std::fmt::Debug;
@@ -35,7 +37,7 @@ pub(crate) fn frame_count(model: &Model, line: &Line, layout: &LineLayout) -> us
     match model.formulation {
         FormulationKind::Dem => dem::frame_count(layout),
         FormulationKind::Lumped => lumped::frame_count(model, line, layout),
-        _ => 0,
+        FormulationKind::Fem | FormulationKind::FemExact => fem::frame_count(line, layout),
     }
 }
 
@@ -47,10 +49,7 @@ pub(crate) fn build(plan: &Plan<'_>) -> Result<Lines, SystemError> {
     match plan.model.formulation {
         FormulationKind::Dem => dem::build(plan),
         FormulationKind::Lumped => lumped::build(plan),
-        kind => Err(SystemError::Unusable {
-            owner: "formulation".into(),
-            what: kind.word().into(),
-        }),
+        FormulationKind::Fem | FormulationKind::FemExact => fem::build(plan),
     }
 }
 

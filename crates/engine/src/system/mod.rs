@@ -206,6 +206,15 @@ pub enum FrameOwner {
         /// Unstretched distance of the element's centre from end A [m].
         arc_length_m: f64,
     },
+    /// Node of a line: name, number from end A (1 is the first), distance [m].
+    Node {
+        /// Line name.
+        line: String,
+        /// Number from end A, starting at 1.
+        number: usize,
+        /// Unstretched distance from end A [m].
+        arc_length_m: f64,
+    },
     /// A body.
     Body(String),
 }
@@ -221,6 +230,16 @@ impl std::fmt::Display for FrameOwner {
                 write!(
                     f,
                     "element {number} of line '{line}' ({arc_length_m:.1} m from end A)"
+                )
+            }
+            FrameOwner::Node {
+                line,
+                number,
+                arc_length_m,
+            } => {
+                write!(
+                    f,
+                    "node {number} of line '{line}' ({arc_length_m:.1} m from end A)"
                 )
             }
             FrameOwner::Body(name) => write!(f, "body '{name}'"),

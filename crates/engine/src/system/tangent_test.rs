@@ -219,6 +219,17 @@ pub(crate) fn moving_system(use_it: impl Fn(&Situation<'_>, &TangentWeights<'_>)
     use_it(&solver.situation(0.7, &state), &weights);
 }
 
+#[test]
+fn iteration_matrix_of_beam_elements_matches_finite_differences() {
+    for formulation in [FormulationKind::Fem, FormulationKind::FemExact] {
+        let model = Model {
+            formulation,
+            ..everything()
+        };
+        check(&model, 0);
+    }
+}
+
 /// Compares all columns but those of points that move nothing, of which there may be so many.
 fn check(model: &Model, most_idle: usize) {
     let system = System::new(model).unwrap();

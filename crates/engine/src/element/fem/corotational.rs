@@ -289,6 +289,10 @@ impl CorotationalState {
         let length = section.length;
         let inverse = 1.0 / triad.chord;
         let (tension, bending) = match prediction {
+            // A law with kinks is no place to look ahead.
+            Some(p) if section.bending_law().is_some() => {
+                (section.tension(p.strain.x).0, self.bending)
+            }
             Some(p) => (section.tension(p.strain.x).0, element.bending(&p.turn)),
             None => (self.tension, self.bending),
         };

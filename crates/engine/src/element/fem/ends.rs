@@ -53,7 +53,8 @@ pub struct ElementTangent {
 pub struct Prediction {
     /// Extension and, in the exact element, shear along local y and z (3) [-].
     pub strain: Vector3,
-    /// Turns of the two ends against the corotational element's axes (2 x 3) [rad].
+    /// Turns of the two ends against the corotational element's axes; in the exact element, first
+    /// the rotation vector from end to end (2 x 3) [rad].
     pub turn: [Vector3; 2],
 }
 

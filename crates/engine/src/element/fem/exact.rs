@@ -208,7 +208,7 @@ impl ExactState {
     /// Source: docs/theory/fem.md, eqs. (21) and (24).
     #[inline]
     pub fn forces(&self, _element: &Exact) -> ElementForces {
-        let local = self.local_forces(&self.force);
+        let local = self.local_forces(&self.force, &self.moment);
         ElementForces {
             force: self.axes * (local.force + self.damping.force),
             moment: [0, 1].map(|k: usize| {
@@ -220,12 +220,11 @@ impl ExactState {
         }
     }
 
-    /// Elastic forces for the force `force` in the element.
+    /// Elastic forces for a force and a moment in the element.
     #[inline]
-    fn local_forces(&self, force: &Vector3) -> ElementForces {
+    fn local_forces(&self, force: &Vector3, moment: &Vector3) -> ElementForces {
         let couple = self.span.cross(force);
-        let bend =
-            self.widened(&self.moment) - self.half.cross(&couple) * (0.5 * self.factors.lag[0]);
+        let bend = self.widened(moment) - self.half.cross(&couple) * (0.5 * self.factors.lag[0]);
         ElementForces {
             force: *force,
             moment: [couple * -0.5 - bend, couple * -0.5 + bend],
@@ -238,7 +237,7 @@ impl ExactState {
         v - self.half.cross(&self.half.cross(v)) * self.factors.widen[0]
     }
 
-    /// Exact derivative of [`Self::forces`]. With a `prediction`, its force takes the place of the
+    /// Exact derivative of [`Self::forces`]. With a `prediction`, its stress takes the place of the
     /// true one in the geometric part (the mixed form).
     ///
     /// Source: docs/theory/fem.md, eq. (22).
@@ -246,6 +245,11 @@ impl ExactState {
         let section = &element.section;
         let identity = Matrix3::identity();
         let force = prediction.map_or(self.force, |p| element.force(&p.strain));
+        let moment = match prediction {
+            // A law with kinks is no place to look ahead.
+            Some(p) if section.bending_law().is_none() => element.moment(&p.turn[0]),
+            _ => self.moment,
+        };
         let half = &self.half;
         let half_hat = hat(half);
         let ([lag, lag_slope], [widen, widen_slope]) = (self.factors.lag, self.factors.widen);
@@ -262,13 +266,13 @@ impl ExactState {
         let by_force = span.map(|span| by_strain * span);
         let by_couple = [0, 1, 2].map(|c: usize| span_hat * by_force[c] - hat(&force) * span[c]);
         let turned_couple = half.cross(&couple);
-        let twice = half.cross(&half.cross(&self.moment));
-        let bend_by_half = (hat(&half.cross(&self.moment)) + half_hat * hat(&self.moment)) * widen
+        let twice = half.cross(&half.cross(&moment));
+        let bend_by_half = (hat(&half.cross(&moment)) + half_hat * hat(&moment)) * widen
             - twice * half.transpose() * (2.0 * widen_slope)
             + hat(&couple) * (0.5 * lag)
             - turned_couple * half.transpose() * lag_slope;
         let stiffness = element.moment_stiffness(&(half * 2.0));
-        let local = self.local_forces(&force);
+        let local = self.local_forces(&force, &moment);
         let bend = (local.moment[1] - local.moment[0]) * 0.5;
         let mut force_rows = by_force;
         let mut couple_rows = by_couple.map(|by| by * -0.5);
@@ -352,7 +356,7 @@ impl ExactState {
         let span = back * (moves[1].0 - moves[0].0) - middle.cross(&self.span);
         Prediction {
             strain: self.strain + span / element.section.length,
-            ..Prediction::default()
+            turn: [self.half * 2.0 + self.widened(&apart), Vector3::zeros()],
         }
     }
 

@@ -228,11 +228,6 @@ impl Field {
         }
     }
 
-    /// Velocity of the middle (3) [m/s].
-    pub fn middle_velocity(&self) -> Vector3 {
-        combine(&AT_POINTS[POINT_COUNT / 2][0], &self.rate)
-    }
-
     /// Kinetic energy of a mass per length [J].
     ///
     /// Source: docs/theory/fem.md, eq. (26).
@@ -259,13 +254,15 @@ impl Field {
         momenta
     }
 
-    /// Adds inertia less loads to `out`, and with `weights` their derivatives.
+    /// Adds inertia less loads to `out`, and with `weights` their derivatives. `uniform`: a load per
+    /// length of which half goes to each end (3) [N/m]; its moments are in `weight.rs`.
     ///
     /// Source: docs/theory/fem.md, eqs. (26) to (30).
     pub fn add(
         &self,
         carried: [&Carried; 2],
         mass: f64,
+        uniform: &Vector3,
         load: &impl SpreadLoad,
         weights: Option<&FieldWeights>,
         out: &mut ElementBlocks,
@@ -275,6 +272,9 @@ impl Field {
         for (row, force) in CUBICS.iter().zip(&mut forces) {
             *force = combine(row, &self.second) * heavy;
         }
+        let half = uniform * (0.5 * self.length);
+        forces[0] -= half;
+        forces[2] -= half;
         let mut columns = weights.map(|weights| self.columns(carried, weights, heavy));
         for (point, [shape, slopes]) in AT_POINTS.iter().enumerate() {
             let station = self.station(point);

@@ -141,7 +141,14 @@ fn evaluate(
     let carried = carriers.map(|carrier| carrier.carried());
     let field = Field::new([&carried[0].end, &carried[1].end], LENGTH);
     let mut blocks = ElementBlocks::zeros();
-    field.add([&carried[0], &carried[1]], MASS, load, weights, &mut blocks);
+    field.add(
+        [&carried[0], &carried[1]],
+        MASS,
+        &Vector3::zeros(),
+        load,
+        weights,
+        &mut blocks,
+    );
     blocks
 }
 

@@ -14,6 +14,7 @@ pub mod field;
 pub mod joint;
 pub mod section;
 mod triad;
+pub mod weight;
 
 #[cfg(test)]
 mod exact_solutions;

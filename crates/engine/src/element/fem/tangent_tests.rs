@@ -7,6 +7,7 @@ use super::ends::{ElementForces, ElementTangent, End};
 use super::exact::{Exact, ExactState};
 use super::joint::{Direction, Hold, JointSprings, JointState, Support};
 use super::section::{ElementSection, SectionLaws};
+use super::weight::Couples;
 use crate::element::curve::Curve;
 
 /// An end of a small element, moved by an increment; velocities follow with a factor.
@@ -134,6 +135,18 @@ fn elements() -> Vec<(String, Evaluate)> {
             }),
         ));
     }
+    let load = Vector3::new(40.0, -70.0, 110.0);
+    elements.push((
+        "uniform load".into(),
+        Box::new(move |ends| {
+            let couples = Couples::new([&ends[0], &ends[1]], 1.05, &load);
+            let tangent = ElementTangent {
+                configuration: couples.tangent(),
+                rates: None,
+            };
+            (couples.forces(), tangent, couples.potential(), -1.0)
+        }),
+    ));
     elements
 }
 
@@ -233,7 +246,11 @@ fn elastic_forces_are_the_gradient_of_the_energy() {
 #[test]
 fn forces_turn_with_the_system_and_keep_momentum() {
     let turn = so3::exp(&Vector3::new(2.0, -1.0, 0.7));
-    for (name, evaluate) in elements() {
+    // A dead load does not turn.
+    for (name, evaluate) in elements()
+        .into_iter()
+        .filter(|(name, _)| name != "uniform load")
+    {
         for ends in pairs() {
             let turned = ends.map(|end| End {
                 position: turn * end.position,
@@ -268,7 +285,10 @@ fn forces_turn_with_the_system_and_keep_momentum() {
 #[test]
 fn rigid_motion_meets_no_damping_and_damping_takes_energy() {
     let spin = Vector3::new(0.3, -0.7, 1.1);
-    for (name, evaluate) in elements() {
+    for (name, evaluate) in elements()
+        .into_iter()
+        .filter(|(name, _)| name != "uniform load")
+    {
         for ends in pairs() {
             assert!(evaluate(&ends).3 < 0.0, "{name}");
             let with = |spin: Vector3| {

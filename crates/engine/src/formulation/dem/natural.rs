@@ -1,61 +1,18 @@
-//! Lines whose sections have directions: which way local y points, and the stress-free shape.
+//! Lines whose sections have directions: how their elements are laid, and the stress-free shape.
 //!
 //! Source: docs/theory/sections.md, eqs. (4) and (14).
 
-use catenix_model::{EndConnection, Joint, Line, LineEnd, Model};
+use catenix_model::{Joint, Line, LineEnd, Model};
 use catenix_numerics::{Matrix3, Vector3, so3};
 
 use super::node_stiffness;
 use crate::element::dem::stiffness::ConnectorStiffness;
+use crate::formulation::directions::{about_x, wanted_axes};
+pub(super) use crate::formulation::directions::{
+    connection_axes, has_directions, is_curved, reference_end,
+};
 use crate::system::LineLayout;
 use crate::system::shape::Supports;
-
-/// Whether it matters how the sections of a line are turned about its axis.
-pub(super) fn has_directions(model: &Model, line: &Line) -> bool {
-    line.sections.iter().any(|section| {
-        let [y, z] = model.line_types[section.line_type].bending_stiffness;
-        y != z || !section.natural.is_straight()
-    }) || line.ends.iter().any(|end| {
-        matches!(end, LineEnd::Connected(connection)
-            if connection.joint == Joint::Fixed && connection.axis_given)
-    })
-}
-
-/// Whether the line is bent where no stress acts.
-pub(super) fn is_curved(line: &Line) -> bool {
-    let curved = |curvature: [f64; 2]| curvature != [0.0; 2];
-    line.sections.iter().any(|s| curved(s.natural.curvature))
-}
-
-/// The end whose connection says where local y points: one that says so itself, else a connected
-/// one; end A before end B.
-pub(super) fn reference_end(line: &Line) -> usize {
-    let connection = |end: usize| match &line.ends[end] {
-        LineEnd::Connected(connection) => Some(connection),
-        LineEnd::Free => None,
-    };
-    let says = |end: usize| {
-        connection(end).is_some_and(|connection| match connection.joint {
-            Joint::Universal { .. } | Joint::Hinge { .. } => true,
-            Joint::Fixed => connection.axis_given,
-            Joint::Ball { .. } => false,
-        })
-    };
-    let order = [0, 1];
-    order
-        .into_iter()
-        .find(|&end| says(end))
-        .or_else(|| order.into_iter().find(|&end| connection(end).is_some()))
-        .unwrap_or(0)
-}
-
-/// Local axes that a connection gives the sections at an end, in the axes of the support.
-pub(super) fn connection_axes(connection: &EndConnection) -> Matrix3 {
-    so3::frame_from_direction(
-        &Vector3::from(connection.direction_local),
-        &Vector3::from(connection.axis_local),
-    )
-}
 
 /// Local axes of the sections at the end of a line, from those of its outermost element, as they
 /// are without stress.
@@ -66,16 +23,6 @@ pub(super) fn end_axes(half: &ConnectorStiffness, end: usize, element: &Matrix3)
     } else {
         element * rest
     }
-}
-
-/// Where a connected end points the sections: its global axes, with x along `tangent`.
-fn wanted_axes(line: &Line, end: usize, tangent: &Vector3, supports: &Supports) -> Matrix3 {
-    let LineEnd::Connected(connection) = &line.ends[end] else {
-        return so3::frame_from_direction(tangent, &so3::any_normal(tangent));
-    };
-    let axes = supports.get(connection.to).rotation * connection_axes(connection);
-    let direction: Vector3 = axes.column(0).into();
-    so3::shortest_arc(&direction, tangent) * axes
 }
 
 /// Rotations of the elements of a line with known tangents (n_elements): carried along with the
@@ -162,8 +109,4 @@ pub(super) fn stress_free(
         elements.reverse();
     }
     elements
-}
-
-fn about_x(angle: f64) -> Matrix3 {
-    so3::exp(&Vector3::new(angle, 0.0, 0.0))
 }

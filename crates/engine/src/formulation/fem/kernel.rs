@@ -1,0 +1,96 @@
+//! What both beam elements offer, so that everything around them is written once.
+
+use std::fmt::Debug;
+
+use catenix_numerics::Vector3;
+
+use crate::element::fem::corotational::{Corotational, CorotationalState};
+use crate::element::fem::ends::{ElementForces, ElementTangent, End, Prediction};
+use crate::element::fem::exact::{Exact, ExactState};
+use crate::element::fem::section::ElementSection;
+
+/// A beam element between two ends.
+pub(super) trait Kernel: Debug + Clone + Send + Sync + 'static {
+    /// The element at one configuration.
+    type State: Debug + Clone + Copy + Send;
+
+    fn new(section: ElementSection) -> Self;
+
+    fn section(&self) -> &ElementSection;
+
+    /// Largest stiffness against any strain [N].
+    fn stiffest(&self) -> f64;
+
+    fn state(&self, ends: &[End; 2]) -> Self::State;
+
+    fn forces(&self, state: &Self::State) -> ElementForces;
+
+    fn tangent(&self, state: &Self::State, prediction: Option<&Prediction>) -> ElementTangent;
+
+    fn predicted(&self, state: &Self::State, moves: &[(Vector3, Vector3); 2]) -> Prediction;
+
+    fn energy(&self, state: &Self::State) -> f64;
+
+    fn damping_power(state: &Self::State) -> f64;
+}
+
+macro_rules! kernel {
+    ($element:ty, $state:ty, $stiffest:expr) => {
+        impl Kernel for $element {
+            type State = $state;
+
+            fn new(section: ElementSection) -> Self {
+                <$element>::new(section)
+            }
+
+            fn section(&self) -> &ElementSection {
+                self.section()
+            }
+
+            fn stiffest(&self) -> f64 {
+                $stiffest(self)
+            }
+
+            #[inline]
+            fn state(&self, ends: &[End; 2]) -> Self::State {
+                <$state>::new(self, ends)
+            }
+
+            #[inline]
+            fn forces(&self, state: &Self::State) -> ElementForces {
+                state.forces(self)
+            }
+
+            #[inline]
+            fn tangent(
+                &self,
+                state: &Self::State,
+                prediction: Option<&Prediction>,
+            ) -> ElementTangent {
+                state.tangent(self, prediction)
+            }
+
+            #[inline]
+            fn predicted(
+                &self,
+                state: &Self::State,
+                moves: &[(Vector3, Vector3); 2],
+            ) -> Prediction {
+                state.predicted(self, moves)
+            }
+
+            fn energy(&self, state: &Self::State) -> f64 {
+                state.energy(self)
+            }
+
+            fn damping_power(state: &Self::State) -> f64 {
+                state.damping_power()
+            }
+        }
+    };
+}
+
+kernel!(Corotational, CorotationalState, |e: &Corotational| e
+    .section()
+    .stiffest());
+kernel!(Exact, ExactState, |e: &Exact| e.stiffest());
