@@ -12,7 +12,8 @@ pub(crate) trait Columnwise {
     fn run<S: Simd, const N: usize>(self, s: S) -> Self::Output;
 }
 
-struct Columns<W>(W);
+/// Chooses the registers of a column.
+pub(crate) struct Columns<W>(pub(crate) W);
 
 impl<W: Columnwise> WithSimd for Columns<W> {
     type Output = W::Output;
@@ -31,4 +32,18 @@ impl<W: Columnwise> WithSimd for Columns<W> {
 /// Does work on columns with the best instructions of this processor.
 pub(crate) fn columnwise<W: Columnwise>(work: W) -> W::Output {
     Arch::new().dispatch(Columns(work))
+}
+
+/// Calls `f` with everything that this processor can compute with: plain numbers too.
+#[cfg(test)]
+pub(crate) fn on_every_instruction_set<W: WithSimd>(work: impl Fn() -> W) -> Vec<W::Output> {
+    let mut outputs = vec![pulp::Scalar.vectorize(work())];
+    #[cfg(target_arch = "x86_64")]
+    {
+        outputs.extend(pulp::x86::V3::try_new().map(|s| Simd::vectorize(s, work())));
+        outputs.extend(pulp::x86::V4::try_new().map(|s| Simd::vectorize(s, work())));
+    }
+    #[cfg(target_arch = "aarch64")]
+    outputs.push(Arch::new().dispatch(work()));
+    outputs
 }

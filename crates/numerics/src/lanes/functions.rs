@@ -71,8 +71,10 @@ fn angle_over_sine_of(cos: f64) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Kernel, Row, vectorised};
+    use super::super::pack::OnPacks;
+    use super::super::{Kernel, Row};
     use super::*;
+    use crate::dispatch::on_every_instruction_set;
 
     struct Both {
         x: Row,
@@ -105,16 +107,17 @@ mod tests {
             [1.0, -2.0, 0.3, -0.0, -0.5, 0.0, -1.0, 1e-3],
         ];
         for (x, y) in cosines.into_iter().zip(heights) {
-            let (count, rows) = vectorised(Both { x, y });
-            for k in 0..count {
-                // Two roundings of numbers of size 3.
-                assert!((rows[0][k] - y[k].atan2(x[k])).abs() < 1e-15 * 3.0);
-                let (value, slope) = angle_over_sine_of(x[k]);
-                assert!((rows[1][k] - value).abs() < 1e-14 * value);
-                assert!((rows[2][k] - slope).abs() < 1e-14 * slope.abs());
-                let sin = (1.0 - x[k] * x[k]).sqrt();
-                if sin > 1e-2 {
-                    assert!((value - x[k].acos() / sin).abs() < 1e-12 * value);
+            for (count, rows) in on_every_instruction_set(|| OnPacks(Both { x, y })) {
+                for k in 0..count {
+                    // Two roundings of numbers of size 3.
+                    assert!((rows[0][k] - y[k].atan2(x[k])).abs() < 1e-15 * 3.0);
+                    let (value, slope) = angle_over_sine_of(x[k]);
+                    assert!((rows[1][k] - value).abs() < 1e-14 * value);
+                    assert!((rows[2][k] - slope).abs() < 1e-14 * slope.abs());
+                    let sin = (1.0 - x[k] * x[k]).sqrt();
+                    if sin > 1e-2 {
+                        assert!((value - x[k].acos() / sin).abs() < 1e-12 * value);
+                    }
                 }
             }
         }

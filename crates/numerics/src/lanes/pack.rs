@@ -32,7 +32,8 @@ pub fn lane_count() -> usize {
     vectorised(Count)
 }
 
-struct OnPacks<K>(K);
+/// Chooses the register.
+pub(super) struct OnPacks<K>(pub(super) K);
 
 impl<K: Kernel> WithSimd for OnPacks<K> {
     type Output = K::Output;
