@@ -47,6 +47,8 @@ pub struct Elimination {
     /// The pivoted factors, once they were needed, and whether they are the last ones.
     pivoted: Option<Box<Factorisation>>,
     fell_back: bool,
+    /// Whether rows are always exchanged.
+    careful: bool,
 }
 
 impl Elimination {
@@ -71,7 +73,14 @@ impl Elimination {
             junctions: JunctionFactors::new(topology.junctions()),
             pivoted: None,
             fell_back: false,
+            careful: false,
         }
+    }
+
+    /// Exchanges rows from now on, always: for matrices that may be nearly singular, where the
+    /// inverses of blocks lose digits that their factors keep.
+    pub fn exchange_rows(&mut self) {
+        self.careful = true;
     }
 
     /// Factorises `matrix` and solves for a first right-hand side: x <- A^-1 rhs, both
@@ -89,12 +98,13 @@ impl Elimination {
         let base = topology.chain_frames();
         x.copy_from_slice(rhs);
         self.junctions.load(&matrix.diagonal[base..]);
-        let safe = columnwise(Forward {
-            factors: &mut *self,
-            topology,
-            matrix,
-            x: &mut *x,
-        });
+        let safe = !self.careful
+            && columnwise(Forward {
+                factors: &mut *self,
+                topology,
+                matrix,
+                x: &mut *x,
+            });
         self.fell_back = !safe;
         if self.fell_back {
             let pivoted = self

@@ -94,9 +94,11 @@ impl<'a> SystemSolver<'a> {
         self.system
     }
 
-    /// Puts loads under the control of a factor.
+    /// Puts loads under the control of a factor, to follow an equilibrium path.
     pub(crate) fn control_loads(&mut self, control: LoadControl) {
         self.load_control = Some(control);
+        // At limit and branch points the matrix is singular.
+        self.factors.exchange_rows();
     }
 
     /// Sets the factor on the controlled loads.
