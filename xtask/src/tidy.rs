@@ -9,6 +9,7 @@ mod arrows;
 mod dependencies;
 mod files;
 mod links;
+mod readme;
 mod sources;
 mod theory;
 mod tokens;
@@ -53,6 +54,7 @@ pub(crate) fn check(root: &Path) -> Result<Vec<Violation>, String> {
     violations.extend(theory::check(&files));
     violations.extend(links::check(root, &files));
     violations.extend(architecture::check(&files));
+    violations.extend(readme::check(&files));
     violations.extend(web::check(root)?);
     violations.sort();
     violations.dedup();
