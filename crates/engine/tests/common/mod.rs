@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "every test file uses another part of this module")]
 
 pub mod path;
+pub mod sea_trial;
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
