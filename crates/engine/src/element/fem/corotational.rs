@@ -93,6 +93,13 @@ impl Corotational {
         &self.section
     }
 
+    /// Largest stiffness against a displacement, times the length [N]: of extension, or of the ends
+    /// across the chord, 12 EI / l^2.
+    pub fn stiffest(&self) -> f64 {
+        let across = self.alike[0].max(self.alike[1]) / self.section.length;
+        self.section.stiffest().max(across)
+    }
+
     /// Shortening by bending, per length, and its derivatives by the two turns.
     ///
     /// Source: docs/theory/fem.md, eq. (8).

@@ -18,7 +18,7 @@ pub(super) trait Kernel: Debug + Clone + Send + Sync + 'static {
 
     fn section(&self) -> &ElementSection;
 
-    /// Largest stiffness against any strain [N].
+    /// Largest stiffness against a displacement, times the length [N].
     fn stiffest(&self) -> f64;
 
     fn state(&self, ends: &[End; 2]) -> Self::State;
@@ -35,7 +35,7 @@ pub(super) trait Kernel: Debug + Clone + Send + Sync + 'static {
 }
 
 macro_rules! kernel {
-    ($element:ty, $state:ty, $stiffest:expr) => {
+    ($element:ty, $state:ty) => {
         impl Kernel for $element {
             type State = $state;
 
@@ -48,7 +48,7 @@ macro_rules! kernel {
             }
 
             fn stiffest(&self) -> f64 {
-                $stiffest(self)
+                self.stiffest()
             }
 
             #[inline]
@@ -90,7 +90,5 @@ macro_rules! kernel {
     };
 }
 
-kernel!(Corotational, CorotationalState, |e: &Corotational| e
-    .section()
-    .stiffest());
-kernel!(Exact, ExactState, |e: &Exact| e.stiffest());
+kernel!(Corotational, CorotationalState);
+kernel!(Exact, ExactState);
