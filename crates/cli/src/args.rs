@@ -277,6 +277,9 @@ pub(crate) struct VerifyArgs {
     /// Take only this case; may be given several times
     #[arg(long = "case", value_name = "NAME")]
     pub(crate) cases: Vec<String>,
+    /// Formulation of lines: dem, fem, fem-exact, lumped, or all of them
+    #[arg(long, value_enum, value_name = "NAME", default_value = "dem")]
+    pub(crate) formulation: FormulationArg,
     /// Folder of verification cases [default: the suite that is part of the program]
     #[arg(long, value_name = "DIR")]
     pub(crate) suite: Option<PathBuf>,
@@ -290,6 +293,44 @@ pub(crate) struct VerifyArgs {
     pub(crate) output: OutputArgs,
     #[command(flatten)]
     pub(crate) work: WorkArgs,
+}
+
+/// One formulation, or all.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum FormulationArg {
+    One(FormulationKind),
+    All,
+}
+
+impl FormulationArg {
+    /// The formulations that are meant.
+    pub(crate) fn kinds(self) -> Vec<FormulationKind> {
+        match self {
+            FormulationArg::One(kind) => vec![kind],
+            FormulationArg::All => FormulationKind::ALL.to_vec(),
+        }
+    }
+}
+
+impl ValueEnum for FormulationArg {
+    fn value_variants<'a>() -> &'a [Self] {
+        const {
+            &[
+                FormulationArg::One(FormulationKind::Dem),
+                FormulationArg::One(FormulationKind::Fem),
+                FormulationArg::One(FormulationKind::FemExact),
+                FormulationArg::One(FormulationKind::Lumped),
+                FormulationArg::All,
+            ]
+        }
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(match self {
+            FormulationArg::One(kind) => kind.word(),
+            FormulationArg::All => "all",
+        }))
+    }
 }
 
 #[derive(Debug, Args)]

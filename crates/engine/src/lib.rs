@@ -19,5 +19,6 @@ pub use analysis::modes::{
     Mode, ModeKind, Modes, ModesError, ModesProgress, Motion, Proof, find_modes,
 };
 pub use analysis::path::{PathEnd, PathError, PathEvent, PathPoint, PathReport, follow_path};
+pub use analysis::stable_step::{StableStep, measure_stable_step};
 pub use analysis::statics::{StaticSolution, StaticsError, StaticsProgress, solve_statics};
 pub use system::{FrameOwner, StepView, System, SystemError};

@@ -99,6 +99,8 @@ pub enum IntegratorSettings {
         /// Highest order, 1 to 5.
         max_order: usize,
     },
+    /// Central differences in as many steps as stability needs; of lumped mass only.
+    Explicit,
 }
 
 impl IntegratorSettings {
@@ -107,6 +109,7 @@ impl IntegratorSettings {
         match self {
             IntegratorSettings::GeneralisedAlpha { .. } => "generalised-alpha",
             IntegratorSettings::Bdf { .. } => "bdf",
+            IntegratorSettings::Explicit => "explicit",
         }
     }
 }

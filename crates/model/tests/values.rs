@@ -393,3 +393,21 @@ duration = 100
     );
     assert_eq!(model.dynamics.unwrap().statistics_window, 8.0);
 }
+
+/// Only lumped mass has a mass at each point for itself.
+#[test]
+fn the_explicit_integrator_belongs_to_lumped_mass() {
+    let explicit = "integrator = \"explicit\"\n";
+    let with = |top: &str| {
+        let text = format!("{top}{BASE}\n[dynamics]\nduration = \"10 s\"\n{explicit}");
+        parse_study(&text, "values.toml", Path::new(""))
+    };
+    let study = with("formulation = \"lumped\"\n").unwrap();
+    let dynamics = study.cases[0].model.dynamics.as_ref().unwrap();
+    assert_eq!(dynamics.integrator, IntegratorSettings::Explicit);
+    let errors = with("").unwrap_err();
+    let [error] = errors.diagnostics.as_slice() else {
+        panic!("one error is expected: {errors}");
+    };
+    assert!(error.message.contains("`explicit`") && error.message.contains("`dem`"));
+}

@@ -61,6 +61,26 @@ impl CentralDifferences {
         self.steps
     }
 
+    /// Takes `count` steps of one size from the current state, with the loads of one `time`
+    /// throughout, and accepts them; the state at the end.
+    ///
+    /// # Errors
+    /// The block whose mass is singular.
+    pub fn advance_steps(
+        &mut self,
+        system: &mut dyn ExplicitSystem,
+        time: f64,
+        step: f64,
+        count: usize,
+    ) -> Result<&MotionState, usize> {
+        self.trial.clone_from(&self.state);
+        for _ in 0..count {
+            self.advance_trial(system, time, step)?;
+        }
+        self.accept();
+        Ok(&self.state)
+    }
+
     /// One step of the trial state.
     ///
     /// Source: docs/theory/integration.md, eq. (16).

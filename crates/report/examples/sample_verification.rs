@@ -32,6 +32,8 @@ fn case(name: &str, title: &str, topic: &str) -> VerifiedCase {
         curves: Vec::new(),
         convergences: Vec::new(),
         estimates: Vec::new(),
+        formulation: "dem".into(),
+        refused: Vec::new(),
         cpu_seconds: 3.21,
     }
 }
@@ -224,6 +226,8 @@ fn arch() -> VerifiedCase {
             passed: Some(true),
         }],
         estimates: Vec::new(),
+        formulation: "dem".into(),
+        refused: Vec::new(),
         cpu_seconds: 125.7,
         ..case(
             "deep-arch",

@@ -105,6 +105,8 @@ fn case(name: &str, topic: &str) -> VerifiedCase {
         curves: Vec::new(),
         convergences: Vec::new(),
         estimates: Vec::new(),
+        formulation: "dem".into(),
+        refused: Vec::new(),
         cpu_seconds: 1.5,
     }
 }

@@ -220,6 +220,7 @@ fn case_attributes(case: &LoadCase) -> Attributes {
             IntegratorSettings::Bdf { max_order } => {
                 insert("max_order", max_order as f64);
             }
+            IntegratorSettings::Explicit => {}
         }
         insert("dynamics_tolerance", dynamics.tolerance);
         insert("dynamics_max_iterations", dynamics.max_iterations as f64);

@@ -45,6 +45,9 @@ impl Verification {
 pub struct VerifiedCase {
     /// Name of the folder.
     pub name: String,
+    /// Formulation under which it was computed, as in a model file.
+    #[serde(default = "dem")]
+    pub formulation: String,
     /// Title.
     pub title: String,
     /// What kind of problem it is, for example "Vibration"; cases of one topic stand together.
@@ -57,6 +60,9 @@ pub struct VerifiedCase {
     pub passed: bool,
     /// Why nothing, or not everything, could be computed.
     pub error: Option<String>,
+    /// Why the formulation cannot do all of it; what it cannot do is not judged.
+    #[serde(default)]
+    pub refused: Vec<String>,
     /// Single numbers.
     pub numbers: Vec<VerifiedNumber>,
     /// Curves.
@@ -68,6 +74,26 @@ pub struct VerifiedCase {
     pub estimates: Vec<VerifiedEstimate>,
     /// Processor time [s].
     pub cpu_seconds: f64,
+}
+
+fn dem() -> String {
+    "dem".to_owned()
+}
+
+impl VerifiedCase {
+    /// Name with the formulation, where that is not discrete elements.
+    pub fn label(&self) -> String {
+        match self.formulation.as_str() {
+            "dem" => self.name.clone(),
+            formulation => format!("{}, {formulation}", self.name),
+        }
+    }
+
+    /// Whether the formulation cannot do any of it.
+    pub fn is_refused(&self) -> bool {
+        let nothing = self.numbers.is_empty() && self.curves.is_empty();
+        nothing && self.convergences.is_empty() && !self.refused.is_empty()
+    }
 }
 
 /// The estimated error of a number with a known answer, on the mesh and with the step that a wanted

@@ -5,6 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
+use catenix_model::FormulationKind;
 use catenix_results::{Verification, VerifiedCase};
 use catenix_study::{in_parallel, read_suite};
 
@@ -41,16 +42,55 @@ fn failures(case: &VerifiedCase) -> Vec<String> {
     found
 }
 
-#[test]
-fn every_case_passes() {
-    let suite = read_suite(&repository_suite()).unwrap();
-    let results = in_parallel(&suite, None, |case| case.verify(&|| false));
+fn assert_passed(results: &[VerifiedCase]) {
     let failed: Vec<String> = results
         .iter()
         .filter(|case| !case.passed)
-        .map(|case| format!("{}:\n  {}", case.name, failures(case).join("\n  ")))
+        .map(|case| format!("{}:\n  {}", case.label(), failures(case).join("\n  ")))
         .collect();
     assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+/// Cases that a formulation cannot do at all are in `refused`, by name; it does all the others.
+fn check_formulation(formulation: FormulationKind, refused: &[&str]) {
+    let suite = read_suite(&repository_suite()).unwrap();
+    let results = in_parallel(&suite, None, |case| case.verify(formulation, &|| false));
+    assert_passed(&results);
+    let found: Vec<&str> = results
+        .iter()
+        .filter(|case| case.is_refused())
+        .map(|case| case.name.as_str())
+        .collect();
+    assert_eq!(found, refused);
+}
+
+#[test]
+fn every_case_that_lumped_mass_can_do_passes_under_it() {
+    // Sections with directions or a stress-free shape, shear, torsion, moments on lines.
+    let refused = [
+        "bend-45-degrees",
+        "cantilever-frequencies",
+        "cantilever-tip-load",
+        "deep-arch",
+        "exudyn-cantilever",
+        "flying-spaghetti",
+        "geradin-cantilever",
+        "helix",
+        "roll-up",
+        "spin-up",
+        "timoshenko-beam",
+        "torsional-vibration",
+    ];
+    check_formulation(FormulationKind::Lumped, &refused);
+}
+
+#[test]
+fn every_case_passes() {
+    let suite = read_suite(&repository_suite()).unwrap();
+    let results = in_parallel(&suite, None, |case| {
+        case.verify(FormulationKind::Dem, &|| false)
+    });
+    assert_passed(&results);
     let verification = Verification::new("", results);
     assert!(
         verification.passed,
@@ -89,12 +129,13 @@ fn changed(file: &str, from: &str, to: &str) -> tempfile::TempDir {
 fn a_wrong_reference_fails_and_a_wrong_file_says_where() {
     let wrong = changed("case.toml", "reference = 7.070254568", "reference = 7.07");
     let case = &read_suite(wrong.path()).unwrap()[0];
-    let result = case.verify(&|| false);
+    let result = case.verify(FormulationKind::Dem, &|| false);
     assert!(!result.passed && result.numbers[0].passed == Some(false));
     assert!(result.numbers[1].passed == Some(true));
 
     let wrong = changed("case.toml", "unit = \"Hz\"", "unit = \"rad/s\"");
-    let result = read_suite(wrong.path()).unwrap()[0].verify(&|| false);
+    let case = &read_suite(wrong.path()).unwrap()[0];
+    let result = case.verify(FormulationKind::Dem, &|| false);
     assert!(result.error.unwrap().contains("\"rad/s\""));
 
     let wrong = changed("case.toml", "tolerance", "tolerence");

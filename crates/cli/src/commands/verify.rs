@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use catenix_model::FormulationKind;
 use catenix_report::write_verification;
 use catenix_results::{Verification, VerifiedCase};
 use catenix_study::{VerificationCase, in_parallel, read_suite};
@@ -42,11 +43,20 @@ pub(crate) fn verify(args: &VerifyArgs) -> Result<Exit, Failure> {
         return Ok(Exit::Success);
     }
     let interrupt = Interrupt::listen()?;
-    let names = cases.iter().map(|case| case.name.chars().count());
+    let formulations = args.formulation.kinds();
+    let jobs: Vec<(&VerificationCase, FormulationKind)> = formulations
+        .iter()
+        .flat_map(|&formulation| cases.iter().map(move |&case| (case, formulation)))
+        .collect();
+    let name = |(case, formulation): &(&VerificationCase, FormulationKind)| match formulation {
+        FormulationKind::Dem => case.name.clone(),
+        other => format!("{}, {}", case.name, other.word()),
+    };
+    let names = jobs.iter().map(|job| name(job).chars().count());
     let progress = Progress::new(args.work.quiet, names);
-    let results: Vec<VerifiedCase> = in_parallel(&cases, args.work.threads, |case| {
-        let _bar = progress.begin(&case.name, &interrupt);
-        case.verify(&|| interrupt.requested())
+    let results: Vec<VerifiedCase> = in_parallel(&jobs, args.work.threads, |job| {
+        let _bar = progress.begin(&name(job), &interrupt);
+        job.0.verify(job.1, &|| interrupt.requested())
     });
     let verification = Verification::new(env!("CARGO_PKG_VERSION"), results);
     let files = match &args.report {

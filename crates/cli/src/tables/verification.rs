@@ -46,13 +46,18 @@ pub(crate) fn verification_text(verification: &Verification) -> String {
             text.push_str(&grid.text());
         }
     }
-    let failed: Vec<&str> = verification
+    let failed: Vec<String> = verification
         .cases
         .iter()
         .filter(|case| !case.passed)
-        .map(|case| case.name.as_str())
+        .map(VerifiedCase::label)
         .collect();
-    let count = verification.cases.len();
+    let refused = verification
+        .cases
+        .iter()
+        .filter(|case| case.is_refused())
+        .count();
+    let count = verification.cases.len() - refused;
     let time: f64 = verification.cases.iter().map(|case| case.cpu_seconds).sum();
     text.push_str(&match failed.as_slice() {
         [] if !verification.passed => "\nToo many error estimates FAILED.\n".to_owned(),
@@ -61,14 +66,26 @@ pub(crate) fn verification_text(verification: &Verification) -> String {
         failed => format!(
             "\n{} of {count} cases FAILED: {}.\n",
             failed.len(),
-            failed.join(", ")
+            failed.join("; ")
         ),
     });
+    if refused > 0 {
+        text.push_str(&format!(
+            "{refused} more could not be computed by their formulation, for the reasons above.\n"
+        ));
+    }
     text
 }
 
 fn case_text(case: &VerifiedCase) -> String {
-    let mut text = heading(&format!("{}: {}", case.name, case.title));
+    let mut text = heading(&format!("{}: {}", case.label(), case.title));
+    if !case.refused.is_empty() {
+        let reasons = case.refused.join("; ");
+        text.push_str(&paragraph(&format!("Not by this formulation: {reasons}")));
+    }
+    if case.is_refused() {
+        return text;
+    }
     let mut grid = Grid::new(&[0, 1]);
     grid.header([
         "",

@@ -6,4 +6,5 @@ mod free_motion;
 pub mod modes;
 pub mod path;
 mod path_step;
+pub mod stable_step;
 pub mod statics;

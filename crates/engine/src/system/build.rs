@@ -1,6 +1,9 @@
 //! From the model to the assembled system.
 
-use catenix_model::{Attachment, Body, EndConnection, Line, LineEnd, Model, PointLoad, SupportRef};
+use catenix_model::{
+    Attachment, Body, DynamicsSettings, EndConnection, FormulationKind, IntegratorSettings, Line,
+    LineEnd, Model, PointLoad, SupportRef,
+};
 use catenix_numerics::{Chain, Topology, Vector3};
 
 use super::{Frame, FrameLump, LineLayout, System, SystemError, loads, shape};
@@ -19,6 +22,19 @@ const ROUND_OFF: f64 = 4.0;
 pub(super) fn build(model: &Model) -> Result<System, SystemError> {
     if model.lines.is_empty() && model.bodies.is_empty() {
         return Err(SystemError::Empty);
+    }
+    let explicit =
+        |dynamics: &DynamicsSettings| dynamics.integrator == IntegratorSettings::Explicit;
+    if model.dynamics.as_ref().is_some_and(explicit) && model.formulation != FormulationKind::Lumped
+    {
+        return Err(SystemError::Unusable {
+            owner: "the explicit integrator".to_owned(),
+            what: format!(
+                "it needs a mass at each point for itself, which the formulation '{}' does not \
+                 have; use 'lumped', or an implicit integrator",
+                model.formulation.word()
+            ),
+        });
     }
     let vessels: Vec<PrescribedMotion> = model.vessels.iter().map(PrescribedMotion::new).collect();
     let mut layouts: Vec<LineLayout> = Vec::new();

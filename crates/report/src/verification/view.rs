@@ -259,11 +259,11 @@ impl Verdict {
 
 impl Case {
     fn new(case: &VerifiedCase, names: &mut Names, drawings: &mut Vec<(String, Drawing)>) -> Self {
-        let id = names.unique(&format!("case-{}", case.name));
+        let id = names.unique(&format!("case-{}", case.label().replace(", ", "-")));
         let mut drawn = 0;
         let mut figure = |chart: Chart, about: Figure| {
             drawn += 1;
-            let stem = names.unique(&format!("{}-{drawn}", case.name));
+            let stem = names.unique(&format!("{}-{drawn}", case.label().replace(", ", "-")));
             let drawing = chart.draw();
             let figure = Figure {
                 id: format!("figure-{stem}"),
@@ -299,12 +299,15 @@ impl Case {
         let relative_to = common_scale(&mut numbers);
         Case {
             id,
-            name: case.name.clone(),
+            name: case.label(),
             title: case.title.clone(),
             summary: case.summary.clone(),
             source: Value::from_safe_string(markdown::to_html(&case.source)),
             verdict: Verdict::of_case(case),
-            error: case.error.clone(),
+            error: case.error.clone().or_else(|| {
+                let reasons = case.refused.join("; ");
+                (!reasons.is_empty()).then(|| format!("not by this formulation: {reasons}"))
+            }),
             worst: worst(case),
             cpu_time: cpu_time(case.cpu_seconds),
             numbers,

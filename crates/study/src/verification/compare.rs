@@ -4,7 +4,7 @@ use std::path::Path;
 
 use catenix_results::{VerifiedConvergence, VerifiedCurve, VerifiedNumber};
 
-use super::results::{Computation, Results};
+use super::results::{Computation, Missing, Results};
 use super::spec::{Convergence, Curve, Number};
 
 /// Errors below this are round-off, which has no order.
@@ -14,7 +14,7 @@ const ROUND_OFF: f64 = 1e-12;
 pub(super) fn verified_number(
     number: &Number,
     results: &mut Results<'_>,
-) -> Result<VerifiedNumber, String> {
+) -> Result<VerifiedNumber, Missing> {
     let computation = Computation {
         analysis: number.origin.analysis,
         load_case: number.origin.load_case.clone(),
@@ -23,10 +23,10 @@ pub(super) fn verified_number(
     };
     let (value, unit) = results.value(&computation, &number.origin)?;
     if unit != number.unit {
-        return Err(format!(
+        return Err(Missing::Failed(format!(
             "`{}`: the reference is in \"{}\", but the result is in \"{unit}\"",
             number.name, number.unit
-        ));
+        )));
     }
     let mut verified = number.not_computed();
     let error = (value - number.reference).abs() / verified.scale;
@@ -41,7 +41,7 @@ pub(super) fn verified_curve(
     curve: &Curve,
     directory: &Path,
     results: &mut Results<'_>,
-) -> Result<VerifiedCurve, String> {
+) -> Result<VerifiedCurve, Missing> {
     let [x, reference] = read_columns(&directory.join(&curve.file))?;
     let computation = Computation {
         analysis: curve.analysis,
@@ -92,15 +92,15 @@ pub(super) fn verified_curve(
 pub(super) fn verified_convergence(
     convergence: &Convergence,
     results: &mut Results<'_>,
-) -> Result<VerifiedConvergence, String> {
+) -> Result<VerifiedConvergence, Missing> {
     let origin = &convergence.origin;
     let of_mesh = convergence.steps.is_empty();
     let count = convergence.splits.len().max(convergence.steps.len());
     if of_mesh == convergence.splits.is_empty() || count < 3 {
-        return Err(format!(
+        return Err(Missing::Failed(format!(
             "`{}` needs at least three `splits`, or three `steps`",
             convergence.name
-        ));
+        )));
     }
     let mut sizes = Vec::new();
     let mut values = Vec::new();

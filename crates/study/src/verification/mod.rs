@@ -12,16 +12,16 @@ mod spec;
 
 use std::path::{Path, PathBuf};
 
-use catenix_model::Study;
 use catenix_model::file::{ModelFileErrors, read_study};
+use catenix_model::{FormulationKind, Study};
 use catenix_results::VerifiedCase;
 use cpu_time::ThreadTime;
 use thiserror::Error;
 
 use compare::{verified_convergence, verified_curve, verified_number};
 use estimates::verified_estimates;
-use results::Results;
-use spec::Spec;
+use results::{Missing, Results};
+use spec::{Comparison, Spec};
 
 /// Name of the file that describes a case.
 const CASE_FILE: &str = "case.toml";
@@ -123,63 +123,90 @@ impl VerificationCase {
         &self.spec.title
     }
 
-    /// Computes the case and compares. `stop` is asked now and then.
-    pub fn verify(&self, stop: &dyn Fn() -> bool) -> VerifiedCase {
+    /// Computes the case under a formulation and compares. `stop` is asked now and then.
+    ///
+    /// What the formulation cannot do is told by its reason and judged neither way. Error estimates
+    /// are held against true errors under discrete elements only.
+    pub fn verify(&self, formulation: FormulationKind, stop: &dyn Fn() -> bool) -> VerifiedCase {
         let cpu = ThreadTime::now();
-        let mut results = Results::new(&self.study, stop);
-        let mut errors: Vec<String> = Vec::new();
-        let mut keep = |error: String| {
-            if !errors.contains(&error) {
-                errors.push(error);
+        let mut results = Results::new(&self.study, formulation, stop);
+        let mut told = Told::default();
+        let mut numbers = Vec::new();
+        for number in &self.spec.numbers {
+            let found = number.adapted(formulation).map_err(Missing::Refused);
+            let found = found.and_then(|number| verified_number(&number, &mut results));
+            match found {
+                Err(Missing::Failed(error)) => {
+                    told.keep(Missing::Failed(error));
+                    numbers.push(number.not_computed());
+                }
+                found => numbers.extend(told.sort_out(found)),
             }
-        };
-        let numbers = self.spec.numbers.iter();
-        let numbers: Vec<_> = numbers
-            .map(|number| {
-                verified_number(number, &mut results).unwrap_or_else(|error| {
-                    keep(error);
-                    number.not_computed()
-                })
-            })
-            .collect();
+        }
         let mut curves = Vec::new();
         for curve in &self.spec.curves {
-            match verified_curve(curve, &self.directory, &mut results) {
-                Ok(curve) => curves.push(curve),
-                Err(error) => keep(error),
-            }
+            let found = curve.adapted(formulation).map_err(Missing::Refused);
+            let found =
+                found.and_then(|curve| verified_curve(&curve, &self.directory, &mut results));
+            curves.extend(told.sort_out(found));
         }
         let mut convergences = Vec::new();
         for convergence in &self.spec.convergences {
-            match verified_convergence(convergence, &mut results) {
-                Ok(convergence) => convergences.push(convergence),
-                Err(error) => keep(error),
-            }
+            let found = convergence.adapted(formulation).map_err(Missing::Refused);
+            let found = found.and_then(|found| verified_convergence(&found, &mut results));
+            convergences.extend(told.sort_out(found));
         }
         let mut estimates = Vec::new();
-        for target in &self.spec.accuracies {
-            match verified_estimates(*target, &self.spec.numbers, &self.study, stop) {
-                Ok(found) => estimates.extend(found),
-                Err(error) => keep(error),
+        if formulation == FormulationKind::Dem {
+            for target in &self.spec.accuracies {
+                match verified_estimates(*target, &self.spec.numbers, &self.study, stop) {
+                    Ok(found) => estimates.extend(found),
+                    Err(error) => told.keep(Missing::Failed(error)),
+                }
             }
         }
-        let passed = errors.is_empty()
+        let passed = told.errors.is_empty()
             && numbers.iter().all(|number| number.passed != Some(false))
             && curves.iter().all(|curve| curve.passed != Some(false))
             && convergences.iter().all(|convergence| convergence.passed);
         VerifiedCase {
             name: self.name.clone(),
+            formulation: formulation.word().to_owned(),
             title: self.spec.title.clone(),
             topic: self.spec.topic.clone(),
             summary: self.spec.summary.clone(),
             source: self.source.clone(),
             passed,
-            error: (!errors.is_empty()).then(|| errors.join("; ")),
+            error: (!told.errors.is_empty()).then(|| told.errors.join("; ")),
+            refused: told.refusals,
             numbers,
             curves,
             convergences,
             estimates,
             cpu_seconds: cpu.elapsed().as_secs_f64(),
         }
+    }
+}
+
+/// What could not be computed, each reason once.
+#[derive(Default)]
+struct Told {
+    errors: Vec<String>,
+    refusals: Vec<String>,
+}
+
+impl Told {
+    fn keep(&mut self, missing: Missing) {
+        let (list, text) = match missing {
+            Missing::Failed(text) => (&mut self.errors, text),
+            Missing::Refused(text) => (&mut self.refusals, text),
+        };
+        if !list.contains(&text) {
+            list.push(text);
+        }
+    }
+
+    fn sort_out<T>(&mut self, found: Result<T, Missing>) -> Option<T> {
+        found.map_err(|missing| self.keep(missing)).ok()
     }
 }

@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-use catenix_engine::{ModeKind, System, find_modes, follow_path, simulate, solve_statics};
-use catenix_model::{Line, LoadCase, Model, StepControl, Study, all_channels};
+use catenix_engine::{
+    ModeKind, System, SystemError, find_modes, follow_path, simulate, solve_statics,
+};
+use catenix_model::{FormulationKind, Line, LoadCase, Model, StepControl, Study, all_channels};
 
 use super::spec::{Analysis, Origin, Value};
 use crate::case::flow;
@@ -18,6 +20,21 @@ pub(super) struct Computation {
     pub split: usize,
     /// Constant step [s]; `None`: that of the model file.
     pub step_s: Option<f64>,
+}
+
+/// Why a result is missing.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Missing {
+    /// The formulation cannot do what the model asks for, and says so.
+    Refused(String),
+    /// Something went wrong.
+    Failed(String),
+}
+
+impl From<String> for Missing {
+    fn from(text: String) -> Missing {
+        Missing::Failed(text)
+    }
 }
 
 /// Rows of everything that changes along an analysis.
@@ -40,14 +57,20 @@ struct Table {
 /// Results of one study, computed when they are asked for.
 pub(super) struct Results<'a> {
     study: &'a Study,
+    formulation: FormulationKind,
     stop: &'a dyn Fn() -> bool,
-    computed: BTreeMap<String, Result<Table, String>>,
+    computed: BTreeMap<String, Result<Table, Missing>>,
 }
 
 impl<'a> Results<'a> {
-    pub(super) fn new(study: &'a Study, stop: &'a dyn Fn() -> bool) -> Results<'a> {
+    pub(super) fn new(
+        study: &'a Study,
+        formulation: FormulationKind,
+        stop: &'a dyn Fn() -> bool,
+    ) -> Results<'a> {
         Results {
             study,
+            formulation,
             stop,
             computed: BTreeMap::new(),
         }
@@ -58,7 +81,8 @@ impl<'a> Results<'a> {
         &mut self,
         computation: &Computation,
         origin: &Origin,
-    ) -> Result<(f64, &'static str), String> {
+    ) -> Result<(f64, &'static str), Missing> {
+        let formulation = self.formulation;
         let table = self.table(computation)?;
         let (word, number) = match origin.result.split_once(' ') {
             Some((word, number)) => (word, number.parse::<usize>().unwrap_or(0)),
@@ -66,11 +90,14 @@ impl<'a> Results<'a> {
         };
         let pick = |list: Option<&Vec<f64>>, unit| match list.and_then(|l| l.get(number - 1)) {
             Some(value) => Ok((value + origin.offset, unit)),
-            None => Err(format!("there is no {word} {number}")),
+            None => Err(Missing::Failed(format!("there is no {word} {number}"))),
         };
         match (computation.analysis, word) {
             (Analysis::Modes, "frequency") if number > 0 => {
                 return pick(Some(&table.frequencies_hz), "Hz");
+            }
+            (Analysis::Modes, "rotation") if formulation == FormulationKind::Lumped => {
+                return Err(Missing::Refused("lumped mass has no torsion".to_owned()));
             }
             (Analysis::Modes, "rotation") if number > 0 => {
                 return pick(Some(&table.rotations_hz), "Hz");
@@ -81,6 +108,10 @@ impl<'a> Results<'a> {
             _ => {}
         }
         let (value, unit) = table.value(computation.analysis, origin)?;
+        if value.is_nan() && formulation == FormulationKind::Lumped {
+            let text = format!("lumped mass has no `{}`", origin.result);
+            return Err(Missing::Refused(text));
+        }
         Ok((value + origin.offset, unit))
     }
 
@@ -89,7 +120,7 @@ impl<'a> Results<'a> {
         &mut self,
         computation: &Computation,
         name: &str,
-    ) -> Result<(Vec<f64>, &'static str), String> {
+    ) -> Result<(Vec<f64>, &'static str), Missing> {
         let table = self.table(computation)?;
         let k = table.index(name)?;
         let values = table.rows.iter().map(|row| row[k]).collect();
@@ -97,12 +128,12 @@ impl<'a> Results<'a> {
     }
 
     /// Elements of all lines.
-    pub(super) fn element_count(&self, computation: &Computation) -> Result<usize, String> {
+    pub(super) fn element_count(&self, computation: &Computation) -> Result<usize, Missing> {
         let model = self.model(computation)?;
         Ok(model.lines.iter().map(Line::element_count).sum())
     }
 
-    fn table(&mut self, computation: &Computation) -> Result<&Table, String> {
+    fn table(&mut self, computation: &Computation) -> Result<&Table, Missing> {
         let model = self.model(computation)?;
         let stop = self.stop;
         let key = format!("{computation:?}");
@@ -116,6 +147,7 @@ impl<'a> Results<'a> {
     fn model(&self, computation: &Computation) -> Result<Model, String> {
         let case = load_case(self.study, computation.load_case.as_deref())?;
         let mut model = case.model.clone();
+        model.formulation = self.formulation;
         for section in model.lines.iter_mut().flat_map(|line| &mut line.sections) {
             let parts = computation.split.max(1);
             let lengths = section.element_lengths.iter();
@@ -143,9 +175,13 @@ pub(super) fn load_case<'s>(study: &'s Study, name: Option<&str>) -> Result<&'s 
     })
 }
 
-fn compute(model: &Model, analysis: Analysis, stop: &dyn Fn() -> bool) -> Result<Table, String> {
+fn compute(model: &Model, analysis: Analysis, stop: &dyn Fn() -> bool) -> Result<Table, Missing> {
     let text = |error: &dyn std::error::Error| error.to_string();
-    let system = System::new(model).map_err(|error| text(&error))?;
+    let system = System::new(model).map_err(|error| match (model.formulation, &error) {
+        (FormulationKind::Dem, _) => Missing::Failed(text(&error)),
+        (_, SystemError::Unusable { .. }) => Missing::Refused(text(&error)),
+        _ => Missing::Failed(text(&error)),
+    })?;
     let channels = all_channels(model);
     let mut table = Table {
         names: channels.iter().map(|c| (c.name.clone(), c.unit)).collect(),
@@ -216,7 +252,7 @@ fn compute(model: &Model, analysis: Analysis, stop: &dyn Fn() -> bool) -> Result
             })
             .map_err(|error| text(&error))?;
             if report.interrupted {
-                return Err("interrupted".to_owned());
+                return Err(Missing::Failed("interrupted".to_owned()));
             }
         }
     }

@@ -1,5 +1,6 @@
 //! The keys of `case.toml`.
 
+use catenix_model::FormulationKind;
 use catenix_results::VerifiedNumber;
 use serde::Deserialize;
 
@@ -102,6 +103,9 @@ pub(super) struct Number {
     /// Only shown, without a verdict.
     #[serde(default)]
     pub shown: bool,
+    /// What is different under other formulations than discrete elements.
+    #[serde(default)]
+    pub under: Under,
 }
 
 /// A curve with its reference.
@@ -136,6 +140,9 @@ pub(super) struct Curve {
     /// Only shown, without a verdict.
     #[serde(default)]
     pub shown: bool,
+    /// What is different under other formulations than discrete elements.
+    #[serde(default)]
+    pub under: Under,
 }
 
 /// A number on a series of meshes, or with a series of steps.
@@ -159,6 +166,108 @@ pub(super) struct Convergence {
     pub least_order: f64,
     /// Why this order is expected.
     pub reason: String,
+    /// What is different under other formulations than discrete elements.
+    #[serde(default)]
+    pub under: Under,
+}
+
+/// What a comparison has its own of under another formulation.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Under {
+    /// Lumped mass.
+    lumped: Option<Special>,
+    /// Finite elements of both kinds.
+    fem: Option<Special>,
+}
+
+/// What is different under a formulation: each key that is given replaces that of the comparison.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Special {
+    pub tolerance: Option<f64>,
+    pub least_order: Option<f64>,
+    pub split: Option<usize>,
+    pub splits: Option<Vec<usize>>,
+    /// Why it is different.
+    pub reason: Option<String>,
+    /// Why the formulation cannot do this at all.
+    pub refused: Option<String>,
+}
+
+impl Under {
+    fn of(&self, formulation: FormulationKind) -> Option<&Special> {
+        match formulation {
+            FormulationKind::Dem => None,
+            FormulationKind::Fem | FormulationKind::FemExact => self.fem.as_ref(),
+            FormulationKind::Lumped => self.lumped.as_ref(),
+        }
+    }
+}
+
+/// Puts what is given in place of what is there.
+fn replace<T: Clone>(value: &mut T, given: &Option<T>) {
+    if let Some(given) = given {
+        value.clone_from(given);
+    }
+}
+
+/// A comparison under a formulation, or why there is none.
+pub(super) trait Comparison: Clone {
+    fn under(&self) -> &Under;
+
+    fn apply(&mut self, special: &Special);
+
+    /// What is compared under `formulation`.
+    ///
+    /// # Errors
+    /// Why the formulation cannot do it.
+    fn adapted(&self, formulation: FormulationKind) -> Result<Self, String> {
+        let mut adapted = self.clone();
+        if let Some(special) = self.under().of(formulation) {
+            if let Some(reason) = &special.refused {
+                return Err(reason.clone());
+            }
+            adapted.apply(special);
+        }
+        Ok(adapted)
+    }
+}
+
+impl Comparison for Number {
+    fn under(&self) -> &Under {
+        &self.under
+    }
+
+    fn apply(&mut self, special: &Special) {
+        replace(&mut self.tolerance, &special.tolerance);
+        replace(&mut self.split, &special.split);
+        replace(&mut self.reason, &special.reason);
+    }
+}
+
+impl Comparison for Curve {
+    fn under(&self) -> &Under {
+        &self.under
+    }
+
+    fn apply(&mut self, special: &Special) {
+        replace(&mut self.tolerance, &special.tolerance);
+        replace(&mut self.split, &special.split);
+        replace(&mut self.reason, &special.reason);
+    }
+}
+
+impl Comparison for Convergence {
+    fn under(&self) -> &Under {
+        &self.under
+    }
+
+    fn apply(&mut self, special: &Special) {
+        replace(&mut self.least_order, &special.least_order);
+        replace(&mut self.splits, &special.splits);
+        replace(&mut self.reason, &special.reason);
+    }
 }
 
 fn one() -> usize {

@@ -423,7 +423,16 @@ impl Formulation for Lumped {
             .iter()
             .flat_map(|line| line.ends.iter().flatten());
         let ties = held.filter_map(|held| Some(held.tie.as_ref()?.stiffness));
-        springs.chain(ties).fold(0.0, f64::max)
+        // An angle is the difference of points over a length: round-off meets 4 k / l^2.
+        let bending = self.lines.iter().flat_map(|line| {
+            (1..line.elements()).map(|node| {
+                let bend = self.bends[line.nodes.start + node].as_ref();
+                let rests = [node - 1, node].map(|e| self.springs[line.springs.start + e].rest);
+                let length = rests[0].min(rests[1]);
+                4.0 * bend.map_or(0.0, BendStiffness::initial) / (length * length)
+            })
+        });
+        springs.chain(ties).chain(bending).fold(0.0, f64::max)
     }
 
     fn stiffest_over(&self, frames: &[Frame], softness: &dyn Fn(&Frame) -> f64) -> f64 {

@@ -89,8 +89,18 @@ pub(super) fn modes(table: &ModesTable, log: &mut Log) -> ModeSettings {
 pub(super) fn dynamics(
     table: &DynamicsTable,
     vessels: &[Slot<Vessel>],
+    formulation: FormulationKind,
     log: &mut Log,
 ) -> DynamicsSettings {
+    if table.integrator == IntegratorChoice::Explicit && formulation != FormulationKind::Lumped {
+        let message = format!(
+            "the integrator `explicit` needs a mass at each point for itself, which the formulation \
+             `{}` does not have",
+            formulation.word()
+        );
+        let help = "remove `integrator`, or write formulation = \"lumped\" at the top of the file";
+        log.error(Code::ConflictingKeys, &table.key_span, message, help);
+    }
     check_below_one("tolerance", &table.tolerance, log);
     let duration = table.duration.si;
     let statistics_window = match &table.statistics_window {
@@ -158,6 +168,15 @@ fn integrator(table: &DynamicsTable, log: &mut Log) -> IntegratorSettings {
             IntegratorSettings::Bdf {
                 max_order: order.map_or(DEFAULT_MAX_ORDER, |order| order.value),
             }
+        }
+        IntegratorChoice::Explicit => {
+            if let Some(radius) = radius {
+                foreign("spectral_radius", &radius.span, "generalised-alpha");
+            }
+            if let Some(order) = order {
+                foreign("max_order", &order.span, "bdf");
+            }
+            IntegratorSettings::Explicit
         }
     }
 }

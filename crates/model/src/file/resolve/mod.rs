@@ -124,10 +124,10 @@ pub(super) fn resolve_case(
 
     let statics = analysis::statics(&table.statics, log);
     let modes = analysis::modes(&table.modes, log);
-    let dynamics = table
-        .dynamics
-        .as_ref()
-        .map(|table| analysis::dynamics(table, &assembly.vessels, log));
+    let dynamics = table.dynamics.as_ref().map(|dynamics| {
+        let formulation = analysis::formulation(table.formulation);
+        analysis::dynamics(dynamics, &assembly.vessels, formulation, log)
+    });
     let path = table
         .path
         .as_ref()

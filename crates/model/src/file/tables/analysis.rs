@@ -41,7 +41,8 @@ table! {
     pub(super) struct DynamicsTable {
         /// Simulated time.
         duration: Positive<Time>,
-        /// Method of integration. Both are implicit and reach the same answers.
+        /// Method of integration. The first two are implicit; all reach the same answers. With the
+        /// explicit one `step` or `max_step` only say how often results are looked at.
         integrator: IntegratorChoice = "generalised-alpha",
         /// Constant step; absent: the step is chosen so that its error stays below `accuracy`.
         step: Option<Positive<Time>>,
@@ -88,5 +89,7 @@ choice! {
         GeneralisedAlpha = "generalised-alpha",
         /// Backward differentiation, Gear's method.
         Bdf = "bdf",
+        /// Central differences, in as many steps as stability needs; with lumped masses only.
+        Explicit = "explicit",
     }
 }
