@@ -15,7 +15,8 @@ pub struct ExportedFile {
     pub path: PathBuf,
     /// Load case; null where the file is about all of them.
     pub case: Option<String>,
-    /// `histories`, `range_graphs`, `static_shape`, `fields`, `series`, `dataset` or `description`.
+    /// `histories`, `fields`, `range_graphs`, `static_shape`, `modes`, `mode_shapes`, `series`,
+    /// `dataset` or `description`.
     pub content: &'static str,
     /// Rows of a table, times of a series or dataset.
     pub rows: usize,

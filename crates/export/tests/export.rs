@@ -107,6 +107,8 @@ fn every_format_writes_what_it_lists() {
                 "a_columns.json",
                 "a_fields.csv",
                 "a_histories.csv",
+                "a_mode_shapes.csv",
+                "a_modes.csv",
                 "a_range_graphs.csv",
                 "a_static_shape.csv",
             ][..],
@@ -116,6 +118,8 @@ fn every_format_writes_what_it_lists() {
             &[
                 "a_fields.parquet",
                 "a_histories.parquet",
+                "a_mode_shapes.parquet",
+                "a_modes.parquet",
                 "a_range_graphs.parquet",
                 "a_static_shape.parquet",
             ],

@@ -30,6 +30,8 @@ class Stored:
     """What the store holds of a case, cut to the rows that were written."""
 
     def __init__(self, store: Path, case: str):
+        self.store, self.case = store, case
+
         def open_group(group: str) -> xr.Dataset:
             return xr.open_zarr(store, group=group, consolidated=False).load()
 
@@ -62,6 +64,7 @@ def same(found, wanted) -> None:
 
 
 def check_table(stored: Stored, read, has_std: bool) -> None:
+    check_modes(stored.store, stored.case, read)
     histories = read("histories")
     assert list(histories)[0] == "time [s]"
     assert len(histories.columns) == len(stored.channels) + 1
@@ -91,6 +94,39 @@ def check_table(stored: Stored, read, has_std: bool) -> None:
             if not has_std:
                 assert graph["std"].isnull().all()
                 same(graph["max"], line[quantity].max("field_time").values.astype(float))
+
+
+def check_modes(store: Path, case: str, read) -> None:
+    """Modes are stored in the synthetic stores only."""
+    if not (store / "cases" / case / "modes").is_dir():
+        return
+
+    def open_group(group: str) -> xr.Dataset:
+        return xr.open_zarr(store, group=f"cases/{case}/modes{group}", consolidated=False).load()
+
+    stored, table, shapes = open_group(""), read("modes"), read("mode_shapes")
+    same(table["mode"], stored["mode"])
+    for column, name in [
+        ("frequency [Hz]", "frequency"),
+        ("omega_squared [rad2/s2]", "omega_squared"),
+        ("damping_ratio [1]", "damping_ratio"),
+        ("effective_mass_z [kg]", "effective_mass_z"),
+    ]:
+        same(table[column], stored[name])
+    for kind in ["lines", "bodies"]:
+        for folder in sorted((store / "cases" / case / "modes" / kind).iterdir()):
+            if not folder.is_dir():
+                continue
+            part = open_group(f"/{kind}/{folder.name}")
+            shape = shapes[shapes["name"] == part.attrs["name"]]
+            for component in ["displacement", "rotation"]:
+                unit = "m" if component == "displacement" else "rad"
+                for axis in "xyz":
+                    wanted = part[f"{component}_{axis}"].values.ravel()
+                    same(shape[f"{component}_{axis} [{unit}]"], wanted)
+            if kind == "lines":
+                count = part.sizes["mode"]
+                same(shape["arc_length [m]"], np.tile(part["arc_length"].values, count))
 
 
 def check_csv(stored: Stored, case: str, directory: Path, has_std: bool) -> None:

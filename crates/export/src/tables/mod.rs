@@ -3,6 +3,7 @@
 mod curves;
 mod fields;
 mod histories;
+mod modes;
 
 use std::path::{Path, PathBuf};
 
@@ -37,8 +38,8 @@ pub(crate) struct CaseTables {
 }
 
 impl CaseTables {
-    /// The tables of a case: what there is of histories, range graphs and static shape; the fields
-    /// where they are asked for.
+    /// The tables of a case: what there is of histories, range graphs, static shape and modes; the
+    /// fields where they are asked for.
     pub(crate) fn new(
         contents: &CaseContents,
         provenance: Provenance,
@@ -52,6 +53,10 @@ impl CaseTables {
         }
         tables.push(Box::new(range_graphs(contents)?));
         tables.push(Box::new(static_shape(contents)?));
+        if let Some(modes) = contents.stored.modes()? {
+            tables.push(Box::new(modes::modes(&modes)));
+            tables.push(Box::new(modes::mode_shapes(&modes, &contents.lines)));
+        }
         tables.retain(|table| table.rows() > 0);
         Ok(CaseTables {
             case: contents.name().to_owned(),
