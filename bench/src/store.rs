@@ -32,6 +32,16 @@ pub(crate) struct Entry {
 pub(crate) fn keep(folder: &Path, section: &Section, entry: Entry) -> Result<(), String> {
     make_folder(folder)?;
     let mut all = read(folder)?;
+    // Numbers that an earlier version of a section kept would stop the page.
+    all.retain(|name, value| {
+        let section = SECTIONS.iter().find(|section| section.name == name);
+        let shown = section.map(|section| (section.markdown)(&value["data"]));
+        let readable = matches!(shown, Some(Ok(_)));
+        if !readable {
+            eprintln!("dropped the numbers of `{name}`, which an earlier version kept");
+        }
+        readable
+    });
     let value = serde_json::to_value(entry).map_err(|error| error.to_string())?;
     all.insert(section.name.to_owned(), value);
     let ordered: Map<String, Value> = SECTIONS
@@ -90,7 +100,12 @@ fn page(all: &Map<String, Value>) -> Result<String, String> {
             continue;
         };
         let _ = write!(text, "\n## {}\n\n", section.title);
-        text.push_str(&(section.markdown)(&entry.data)?);
+        text.push_str(&(section.markdown)(&entry.data).map_err(|error| {
+            format!(
+                "{}: {error}; measure it again: `cargo xtask bench {}`",
+                section.title, section.name
+            )
+        })?);
         text.push('\n');
         text.push_str(&circumstances(&entry.circumstances));
     }

@@ -197,10 +197,13 @@ impl Runner<'_> {
             Program::Catenix => {
                 // A mesh or step that does not converge is a finding, as it is for the peers.
                 let task = trial::task(self.context, case, mesh, Stepping::Fixed(step))?;
-                if let Ok(probe) = task.run(self.context) {
-                    trial.cpu_s = probe.motion_cpu_s;
-                    trial.simulated_s = probe.simulated_s;
-                    trial.errors = Some(Outcome::of(&probe)?.errors(right));
+                match task.run(self.context) {
+                    Ok(probe) => {
+                        trial.cpu_s = probe.motion_cpu_s;
+                        trial.simulated_s = probe.simulated_s;
+                        trial.errors = Some(Outcome::of(&probe)?.errors(right));
+                    }
+                    Err(message) => eprintln!("    Catenix {}: {message}", trial.setting()),
                 }
             }
             Program::MoorDyn => self.ask("run_moordyn.py", &mut trial, right)?,
@@ -339,7 +342,7 @@ fn markdown(data: &Value) -> Result<String, String> {
             "elements, step",
             "CPU ms per simulated s",
             "times real time",
-            "Catenix is faster by",
+            "cost over Catenix's",
             "offset error, %",
             "top tension error, %",
             "hose force error, %",

@@ -187,7 +187,7 @@ fn charts(data: &Value) -> Result<Figures, String> {
         ChartAxis::logarithmic("Largest error of offset, top tension and hose force", "%"),
         curves.collect(),
     )
-    .with_note("Steps of 0.4 s, 0.2 s and 0.1 s, from left to right.");
+    .with_note("Each curve from above: steps of 0.4 s, 0.2 s and 0.1 s.");
     Ok(vec![("system".to_owned(), chart)])
 }
 
