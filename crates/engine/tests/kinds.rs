@@ -355,7 +355,7 @@ fn a_vertical_pipe_in_still_water_stays_vertical() {
     let wet = (7850.0 - WATER) * 0.25 * PI * (0.09 - 0.0676) * G;
     let weight_in_air = (wet + WATER * G * 0.25 * PI * 0.09) * 1000.0;
     // Each of 50 elements may keep the residual that the analysis allows, all with one sign.
-    for (fields, residual) in [(&run.statics.fields[0], 1e-7), (&run.fields[0], 1e-6)] {
+    for (fields, residual) in [(&run.statics.fields[0], 1e-7), (&run.fields[0], 1e-5)] {
         for node in 0..=50 {
             let [x, y, _] = fields.position(node);
             assert_near("x", x, 0.0, 1e-9);

@@ -117,7 +117,7 @@ impl IntegratorSettings {
 /// Choice of the time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StepControl {
-    /// Constant step [s] (shortened only to end on output times, or cut when Newton fails).
+    /// Constant step [s] (shortened only to end where loads jump, or cut when Newton fails).
     Fixed(f64),
     /// Step chosen so that the local error of one step stays below `accuracy` (a fraction of the
     /// reference length of the system), between `min` and `max` [s].

@@ -11,6 +11,8 @@ pub struct OutputSettings {
     pub interval: f64,
     /// Interval of the line fields (every quantity along every line) [s].
     pub field_interval: f64,
+    /// Whether results at output times are interpolated between steps; if not, steps end there.
+    pub interpolate: bool,
     /// Channels beyond the standard ones, as written by the user and resolved.
     pub channels: Vec<Channel>,
 }

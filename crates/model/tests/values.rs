@@ -86,7 +86,7 @@ fn defaults_are_the_documented_ones() {
     assert_eq!(
         dynamics.step,
         StepControl::Adaptive {
-            accuracy: 3e-6,
+            accuracy: 2e-5,
             min: 1e-4,
             max: 0.5
         }
@@ -97,7 +97,7 @@ fn defaults_are_the_documented_ones() {
             spectral_radius: 0.8
         }
     );
-    assert_eq!(dynamics.tolerance, 1e-6);
+    assert_eq!(dynamics.tolerance, 1e-5);
     assert_eq!(dynamics.max_iterations, 12);
     assert_eq!(dynamics.statistics_window, 20.0);
     assert_eq!(

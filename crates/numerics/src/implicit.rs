@@ -46,6 +46,29 @@ impl TangentWeights<'_> {
     }
 }
 
+/// A motion that is known beforehand, (n) each.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct CarriedMotion {
+    /// Travel since the start; of a frame only the translation [m].
+    pub travel: Vec<Vector6>,
+    /// Its rate [m/s].
+    pub velocity: Vec<Vector6>,
+    /// Its second rate [m/s2].
+    pub acceleration: Vec<Vector6>,
+}
+
+impl CarriedMotion {
+    /// No motion of `n` blocks.
+    pub fn none(n: usize) -> CarriedMotion {
+        let zeros = vec![Vector6::zeros(); n];
+        CarriedMotion {
+            travel: zeros.clone(),
+            velocity: zeros.clone(),
+            acceleration: zeros,
+        }
+    }
+}
+
 /// The largest residual and where it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ResidualSize {
@@ -60,7 +83,20 @@ pub trait ImplicitSystem {
     /// Number of frames.
     fn frame_count(&self) -> usize;
 
-    /// Called before the first iteration of a solution.
+    /// Writes a motion that the supports of the system impose on it, as far as it is known
+    /// beforehand, at `time`; returns whether there is any.
+    ///
+    /// Any twice differentiable motion is right. The closer it is to the true one, the smaller are
+    /// the errors of a step: only the difference is integrated.
+    ///
+    /// Source: docs/theory/integration.md, eq. (17).
+    fn carry(&self, time: f64, carried: &mut CarriedMotion) -> bool {
+        let _ = (time, carried);
+        false
+    }
+
+    /// Called before the first iteration of a solution, unless the last one converged and this one
+    /// follows it in time.
     fn begin(&mut self);
 
     /// Writes the residual (inertia + internal - external forces, (n) [N, N m]) at `time` and,
@@ -78,6 +114,9 @@ pub trait ImplicitSystem {
     /// # Errors
     /// The frame whose pivot is singular.
     fn solve(&mut self, residual: &[Vector6], increment: &mut [Vector6]) -> Result<(), usize>;
+
+    /// increment <- -S^-1 residual, with the matrix of the last [`Self::solve`].
+    fn solve_again(&mut self, residual: &[Vector6], increment: &mut [Vector6]);
 
     /// Told of the increment that is about to be applied (the last solution, perhaps shortened).
     fn moving(&mut self, increment: &[Vector6]) {

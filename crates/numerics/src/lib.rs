@@ -34,7 +34,7 @@ pub use chains::{BlockMatrix, Chain, FactorError, Factorisation, Topology};
 pub use explicit::{CentralDifferences, ExplicitSystem, stability_limit};
 pub use frames::Configuration;
 pub use generalised_alpha::{AlphaParameters, GeneralisedAlpha};
-pub use implicit::{ImplicitSystem, MotionState, ResidualSize, TangentWeights};
+pub use implicit::{CarriedMotion, ImplicitSystem, MotionState, ResidualSize, TangentWeights};
 pub use integrator::{Integrator, StepOutcome, StepSettings};
 pub use newton::{NewtonFailure, NewtonSettings};
 pub use sweep::Elimination;

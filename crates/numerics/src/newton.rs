@@ -7,6 +7,12 @@ use crate::implicit::{ImplicitSystem, MotionState, ResidualSize, TangentWeights}
 
 /// Newton iterations before the line search looks at their residual.
 const UNCHECKED_ITERATIONS: usize = 4;
+/// Share of the residual that an iteration with an old matrix may leave, to be worth another one.
+const GOOD_REDUCTION: f64 = 0.5;
+/// Solutions that get new matrices only, after an old one did not do.
+const PAUSE: usize = 8;
+/// Most iterations in a row with an old matrix.
+const MOST_REUSES: usize = 3;
 /// Most halvings of an increment.
 const MOST_HALVINGS: usize = 3;
 
@@ -61,6 +67,10 @@ pub(crate) struct Newton {
     increment: Vec<Vector6>,
     /// Iterations of the last solution; the next one is likely to take as many.
     expected: usize,
+    /// Whether the last solution converged.
+    converged: bool,
+    /// Solutions to come that get a new matrix in every iteration.
+    pause: usize,
 }
 
 impl Newton {
@@ -69,6 +79,8 @@ impl Newton {
             residual: vec![Vector6::zeros(); frame_count],
             increment: vec![Vector6::zeros(); frame_count],
             expected: 0,
+            converged: false,
+            pause: 0,
         }
     }
 
@@ -80,19 +92,31 @@ impl Newton {
         stage: &mut dyn Stage,
         settings: &NewtonSettings,
     ) -> Result<NewtonOutcome, NewtonFailure> {
-        system.begin();
+        // What the system knows of the last solution helps where this one follows it.
+        if !std::mem::take(&mut self.converged) {
+            system.begin();
+        }
         let mut iterations = 0;
         let mut previous = f64::INFINITY;
+        let mut may_reuse = self.pause == 0;
+        self.pause = self.pause.saturating_sub(1);
+        let mut reuses = 0;
         loop {
-            // Where convergence is likely, the residual alone is evaluated, and the matrix only when
-            // it shows none. Elsewhere both come from one evaluation.
-            let likely = iterations >= self.expected.min(UNCHECKED_ITERATIONS);
+            // Where convergence is likely, or the old matrix may do, the residual alone is
+            // evaluated. Elsewhere residual and matrix come from one evaluation.
+            let likely = may_reuse || iterations >= self.expected.min(UNCHECKED_ITERATIONS);
             let mut converged = false;
+            let mut reuse = false;
             if iterations > 0 && likely {
                 let residual = self.search_line(system, time, stage, iterations, previous);
                 converged = residual <= settings.tolerance_newtons;
+                if reuses > 0 && residual > GOOD_REDUCTION * previous && !converged {
+                    may_reuse = false;
+                    self.pause = PAUSE;
+                }
+                reuse = may_reuse && !converged && reuses < MOST_REUSES;
             }
-            if !converged {
+            if !converged && !reuse {
                 stage.linearise();
                 let weights = stage.weights();
                 system.assemble(time, stage.trial(), Some(&weights), &mut self.residual);
@@ -104,26 +128,35 @@ impl Newton {
                 singular: false,
             };
             if !residual.newtons.is_finite() {
+                self.pause = PAUSE;
                 return Err(failure);
             }
             previous = residual.newtons;
             if residual.newtons <= settings.tolerance_newtons {
                 self.expected = iterations;
+                self.converged = true;
                 return Ok(NewtonOutcome {
                     iterations,
                     residual,
                 });
             }
             if iterations == settings.max_iterations {
+                self.pause = PAUSE;
                 return Err(failure);
             }
-            system
-                .solve(&self.residual, &mut self.increment)
-                .map_err(|frame| NewtonFailure {
-                    residual: ResidualSize { frame, ..residual },
-                    singular: true,
-                    ..failure
-                })?;
+            if reuse {
+                reuses += 1;
+                system.solve_again(&self.residual, &mut self.increment);
+            } else {
+                reuses = 0;
+                system
+                    .solve(&self.residual, &mut self.increment)
+                    .map_err(|frame| NewtonFailure {
+                        residual: ResidualSize { frame, ..residual },
+                        singular: true,
+                        ..failure
+                    })?;
+            }
             iterations += 1;
             system.moving(&self.increment);
             stage.correct(&self.increment);

@@ -186,6 +186,11 @@ impl ImplicitSystem for Tumbler {
         Ok(())
     }
 
+    fn solve_again(&mut self, residual: &[Vector6], increment: &mut [Vector6]) {
+        self.solve(residual, increment)
+            .expect("this matrix has been solved before");
+    }
+
     fn residual_size(&self, residual: &[Vector6]) -> ResidualSize {
         ResidualSize {
             newtons: residual[0].norm(),
@@ -263,6 +268,8 @@ impl ImplicitSystem for Oscillator {
     fn solve(&mut self, _residual: &[Vector6], _increment: &mut [Vector6]) -> Result<(), usize> {
         Err(0)
     }
+
+    fn solve_again(&mut self, _residual: &[Vector6], _increment: &mut [Vector6]) {}
 
     fn residual_size(&self, residual: &[Vector6]) -> ResidualSize {
         ResidualSize {
@@ -401,6 +408,11 @@ impl ImplicitSystem for Dumbbell {
         let part = |row: usize| -> Vector3 { solved.fixed_rows::<3>(row).into() };
         increment.copy_from_slice(&self.laid_out(&[part(0), part(3)]));
         Ok(())
+    }
+
+    fn solve_again(&mut self, residual: &[Vector6], increment: &mut [Vector6]) {
+        self.solve(residual, increment)
+            .expect("this matrix has been solved before");
     }
 
     fn residual_size(&self, residual: &[Vector6]) -> ResidualSize {

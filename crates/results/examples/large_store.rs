@@ -27,14 +27,6 @@ impl Sample for Swing {
         self.step as f64 * INTERVAL_S
     }
 
-    fn at_output_time(&self) -> bool {
-        true
-    }
-
-    fn at_field_time(&self) -> bool {
-        true
-    }
-
     fn channel(&self, target: ChannelTarget) -> f64 {
         match target {
             ChannelTarget::BodyAngle(..) | ChannelTarget::VesselAngle(..) => 0.0,

@@ -189,10 +189,10 @@ impl LineArrays {
 
     /// One quantity out of extremes of (quantities x nodes).
     pub(crate) fn extremes_of(&self, extremes: &Extremes, quantity: LineQuantity) -> Extremes {
-        Extremes {
-            min: self.part(&extremes.min, quantity).to_vec(),
-            max: self.part(&extremes.max, quantity).to_vec(),
-        }
+        Extremes::of(
+            self.part(&extremes.min, quantity).to_vec(),
+            self.part(&extremes.max, quantity).to_vec(),
+        )
     }
 
     /// Writes the static state: (quantities x nodes).

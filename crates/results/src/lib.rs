@@ -10,6 +10,7 @@
 //! The layout of the store is in docs/results.md; it opens in xarray as it is.
 
 mod case_arrays;
+mod curve;
 mod date;
 mod description;
 mod details;
@@ -37,6 +38,7 @@ mod summary;
 mod verification;
 mod zarr;
 
+pub use curve::{Curve, OutputTimes};
 pub use description::{
     ArrayPlace, CaseDescription, CaseProgress, ChannelPlace, LinePlace, QuantityPlace, read_vector,
 };

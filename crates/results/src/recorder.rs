@@ -5,13 +5,15 @@ use std::time::{Duration, Instant};
 use catenix_model::{Channel, LineQuantity, LoadCase, all_channels};
 
 use crate::case_arrays::{CaseArrays, LineArrays};
+use crate::curve::time_tolerance;
 use crate::layout;
 use crate::outcome::CaseOutcome;
 use crate::store_reader::StoredCase;
 use crate::summarise::{CaseLayout, StatisticsSource};
 use crate::zarr::{Attributes, Group};
 use crate::{
-    CaseModes, CaseSummary, Extent, Extremes, Sample, Status, StoreError, WindowStatistics,
+    CaseModes, CaseSummary, Curve, Extent, Extremes, OutputTimes, Sample, Status, StoreError,
+    WindowStatistics,
 };
 
 /// Longest elapsed time between two flushes. A killed run loses at most this much of its work.
@@ -39,10 +41,17 @@ pub struct CaseRecorder {
     /// Over the whole run.
     channel_extremes: Extremes,
     line_extremes: Vec<Extremes>,
-    /// Values of all channels (n_channels).
+    /// Through the latest samples: rows are taken from it at the output times.
+    channel_curve: Curve,
+    line_curves: Vec<Curve>,
+    /// Room for a sample or row: values of all channels (n_channels), and along each line
+    /// (quantities x nodes).
     channel_values: Vec<f64>,
-    /// Values along each line (quantities x nodes).
     line_values: Vec<Vec<f64>>,
+    history_times: OutputTimes,
+    field_times: OutputTimes,
+    /// Time of the latest sample [s].
+    latest_s: Option<f64>,
     last_flush: Instant,
 }
 
@@ -72,6 +81,11 @@ impl CaseRecorder {
                 .collect(),
             channel_extremes: Extremes::new(channels.len()),
             line_extremes: line_values.iter().map(|v| Extremes::new(v.len())).collect(),
+            channel_curve: Curve::new(channels.len()),
+            line_curves: line_values.iter().map(|v| Curve::new(v.len())).collect(),
+            history_times: OutputTimes::new(model.output.interval, duration_s),
+            field_times: OutputTimes::new(model.output.field_interval, duration_s),
+            latest_s: None,
             channel_values: vec![0.0; channels.len()],
             line_values,
             channels,
@@ -95,7 +109,7 @@ impl CaseRecorder {
         }
         if case.model.dynamics.is_none() {
             // The static state is all there is: it stands for the history and the statistics too.
-            self.write_rows(&mut arrays, sample, true, true, true)?;
+            self.add_sample(&mut arrays, sample, true)?;
         }
         self.arrays = Some(arrays);
         self.flush()
@@ -107,19 +121,15 @@ impl CaseRecorder {
     }
 
     /// Records an accepted state: the start, then the end of every step.
+    ///
+    /// Output times may lie anywhere between: their rows are interpolated as soon as the step after
+    /// them is known ([`Curve`]).
     pub fn record(&mut self, sample: &impl Sample) -> Result<(), StoreError> {
         let Some(mut arrays) = self.arrays.take() else {
             return Ok(());
         };
-        let tolerance = 1e-9 * self.duration_s.max(1.0);
-        let in_window = sample.time() >= self.window_start_s - tolerance;
-        let result = self.write_rows(
-            &mut arrays,
-            sample,
-            sample.at_output_time(),
-            sample.at_field_time(),
-            in_window,
-        );
+        let in_window = sample.time() >= self.window_start_s - time_tolerance(self.duration_s);
+        let result = self.add_sample(&mut arrays, sample, in_window);
         self.arrays = Some(arrays);
         let chunk_written = result?;
         if chunk_written || self.last_flush.elapsed() >= FLUSH_INTERVAL {
@@ -128,39 +138,57 @@ impl CaseRecorder {
         Ok(())
     }
 
-    /// Evaluates a sample and stores what is due; returns whether a chunk was filled.
+    /// Evaluates a sample and stores the rows that it makes known; returns whether a chunk was
+    /// filled.
     ///
     /// Every sample is evaluated as a whole, because every one may hold an extreme of the run. Along
     /// the 290 elements of the sea trial this takes some 30 microseconds, a twentieth of a step.
-    fn write_rows(
+    fn add_sample(
         &mut self,
         arrays: &mut CaseArrays,
         sample: &impl Sample,
-        history: bool,
-        fields: bool,
         in_window: bool,
     ) -> Result<bool, StoreError> {
-        let mut chunk_written = false;
+        let time = sample.time();
         for (value, channel) in self.channel_values.iter_mut().zip(&self.channels) {
             *value = sample.channel(channel.target);
         }
-        self.channel_extremes.add(&self.channel_values);
+        self.channel_extremes.add(time, &self.channel_values);
+        self.channel_curve.push(time, &self.channel_values);
         for (line, values) in self.line_values.iter_mut().enumerate() {
             sample.line_quantities(line, values);
-            self.line_extremes[line].add(values);
+            self.line_extremes[line].add(time, values);
+            self.line_curves[line].push(time, values);
         }
         if in_window {
-            self.channel_statistics
-                .add(sample.time(), &self.channel_values);
+            self.channel_statistics.add(time, &self.channel_values);
             for (statistics, values) in self.line_statistics.iter_mut().zip(&self.line_values) {
-                statistics.add(sample.time(), values);
+                statistics.add(time, values);
             }
         }
-        if history {
-            chunk_written |= arrays.push_history(sample.time(), &self.channel_values)?;
+        // How the last stretch bends shows only at the next sample; its end is known now.
+        let known = self.latest_s.replace(time).unwrap_or(f64::NEG_INFINITY);
+        self.write_rows(arrays, known, time)
+    }
+
+    /// Writes the rows up to a time, and one at the latest sample if that is the next; returns
+    /// whether a chunk was filled.
+    fn write_rows(
+        &mut self,
+        arrays: &mut CaseArrays,
+        known: f64,
+        latest: f64,
+    ) -> Result<bool, StoreError> {
+        let mut chunk_written = false;
+        while let Some(time) = self.history_times.due(known, latest) {
+            self.channel_curve.at(time, &mut self.channel_values);
+            chunk_written |= arrays.push_history(time, &self.channel_values)?;
         }
-        if fields {
-            chunk_written |= arrays.push_fields(sample.time(), &self.line_values)?;
+        while let Some(time) = self.field_times.due(known, latest) {
+            for (curve, values) in self.line_curves.iter().zip(&mut self.line_values) {
+                curve.at(time, values);
+            }
+            chunk_written |= arrays.push_fields(time, &self.line_values)?;
         }
         Ok(chunk_written)
     }
@@ -187,6 +215,9 @@ impl CaseRecorder {
         let mut summary = outcome.summary(&self.layout.description);
         let mut arrays = self.arrays.take();
         if let Some(arrays) = &mut arrays {
+            if let Some(latest) = self.latest_s {
+                self.write_rows(arrays, latest, latest)?;
+            }
             arrays.history.finish()?;
             arrays.fields.finish()?;
             self.write_attributes(arrays)?;

@@ -7,10 +7,6 @@ use catenix_model::ChannelTarget;
 pub trait Sample {
     /// Simulated time [s].
     fn time(&self) -> f64;
-    /// Whether the time histories get a row here.
-    fn at_output_time(&self) -> bool;
-    /// Whether the line fields get a row here.
-    fn at_field_time(&self) -> bool;
     /// Value of a channel, in its unit.
     fn channel(&self, target: ChannelTarget) -> f64;
     /// Every quantity along a line: (quantities x nodes), in the order of

@@ -68,7 +68,7 @@ impl StatisticsSource for StaticState {
         let nodes = line.arc_length.len();
         let row = &line.values[quantity.index() * nodes..(quantity.index() + 1) * nodes];
         let mut extremes = Extremes::new(nodes);
-        extremes.add(row);
+        extremes.add(0.0, row);
         Some((line.arc_length.clone(), extremes))
     }
 }

@@ -286,10 +286,7 @@ impl StoredCase {
     /// the case has ended.
     pub fn run_extremes(&self, line: &str, quantity: LineQuantity) -> Result<Extremes, StoreError> {
         let [min, max] = RUN_SUFFIXES.map(|suffix| self.curve(line, quantity, suffix));
-        Ok(Extremes {
-            min: min?,
-            max: max?,
-        })
+        Ok(Extremes::of(min?, max?))
     }
 
     /// A curve over arc length that was written at the end of the case.
@@ -337,7 +334,12 @@ impl StoredCase {
     ) -> Result<Extremes, StoreError> {
         let nodes = self.line_array(line, quantity.name())?.shape().row_len();
         let mut extremes = Extremes::new(nodes);
-        self.for_each_stored_row(line, quantity, &mut |row| extremes.add(row))?;
+        let rows = rows(&self.group.attributes()?, layout::FIELD_ROWS_KEY);
+        let times = self.line_array(line, "field_time")?.read_rows(0, rows)?;
+        let mut times = times.into_iter();
+        self.for_each_stored_row(line, quantity, &mut |row| {
+            extremes.add(times.next().unwrap_or(f64::NAN), row);
+        })?;
         Ok(extremes)
     }
 

@@ -60,8 +60,8 @@ impl StatisticsSource for StoredStatistics<'_> {
         let history = self.case.channel(name).ok()?;
         let mean = self.mean_of(&history)?;
         let mut extremes = Extremes::new(1);
-        for value in &history.values {
-            extremes.add(&[*value]);
+        for (time, value) in history.times_s.iter().zip(&history.values) {
+            extremes.add(*time, &[*value]);
         }
         Some(Extent::new(extremes.min[0], mean, extremes.max[0]))
     }

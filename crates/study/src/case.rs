@@ -240,14 +240,6 @@ impl Sample for EngineSample<'_, '_> {
         self.0.time()
     }
 
-    fn at_output_time(&self) -> bool {
-        self.0.at_output_time()
-    }
-
-    fn at_field_time(&self) -> bool {
-        self.0.at_field_time()
-    }
-
     fn channel(&self, target: ChannelTarget) -> f64 {
         self.0.channel(target)
     }

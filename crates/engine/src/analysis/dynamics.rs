@@ -20,6 +20,12 @@ const SMALLEST_CUT: f64 = 1e-4;
 /// Share of the step that is stable by theory that explicit integration takes: tensions rise
 /// within a step of output.
 const EXPLICIT_SHARE: f64 = 0.9;
+/// Steps that must all allow a larger one before the step grows.
+const PATIENCE: usize = 20;
+/// Growth that is taken at once: the step is much too small, as at the start.
+const LEAP: f64 = 2.5;
+/// Least growth that is worth a change.
+const WORTHWHILE: f64 = 1.1;
 /// Weight of the mass that drowns stiffness and damping when accelerations are found [1/s2].
 const MASS_ONLY: f64 = 1e20;
 
@@ -141,6 +147,7 @@ pub fn simulate(
         integrator,
         ledger,
         statistics: SolverStatistics::default(),
+        calm: Calm::new(),
         time: 0.0,
     }
     .run(observer)
@@ -176,7 +183,25 @@ struct Simulation<'s> {
     integrator: Box<dyn Integrator>,
     ledger: EnergyLedger,
     statistics: SolverStatistics,
+    calm: Calm,
     time: f64,
+}
+
+/// What the steps since the last change of their size would have allowed.
+#[derive(Debug, Clone, Copy)]
+struct Calm {
+    steps: usize,
+    /// The smallest size that one of them asked for [s].
+    least: f64,
+}
+
+impl Calm {
+    fn new() -> Calm {
+        Calm {
+            steps: 0,
+            least: f64::INFINITY,
+        }
+    }
 }
 
 impl Simulation<'_> {
@@ -210,6 +235,7 @@ impl Simulation<'_> {
             let outcome = match result {
                 Ok(outcome) => outcome,
                 Err(failure) => {
+                    self.calm = Calm::new();
                     self.statistics.iterations += failure.iterations;
                     self.statistics.rejected_steps += 1;
                     size = 0.25 * step;
@@ -260,17 +286,32 @@ impl Simulation<'_> {
     }
 
     /// The size to ask for after a converged step, or a smaller one to repeat it with.
-    fn next_size(&self, step: f64, asked: f64, outcome: &StepOutcome) -> Result<f64, f64> {
+    ///
+    /// The size changes seldom: every change disturbs what the integrator remembers.
+    ///
+    /// Source: docs/theory/integration.md, below eq. (9).
+    fn next_size(&mut self, step: f64, asked: f64, outcome: &StepOutcome) -> Result<f64, f64> {
         match self.settings.step {
             StepControl::Fixed(fixed) => Ok((2.0 * asked).min(fixed)),
             StepControl::Adaptive { min, max, .. } => {
                 let wanted = outcome.growth * step;
                 let allowed = self.goals.allowed_error.unwrap_or(f64::INFINITY);
                 if outcome.local_error > allowed && step > min * (1.0 + 1e-9) {
+                    self.calm = Calm::new();
                     return Err(wanted.clamp((0.2 * step).max(min), step));
                 }
-                // A step cut short by an output time says nothing against the size asked for.
-                let mut proposal = wanted.clamp(0.5 * step, 2.0 * asked);
+                self.calm.steps += 1;
+                self.calm.least = self.calm.least.min(wanted);
+                let mut proposal = asked;
+                if wanted > LEAP * asked {
+                    proposal = 2.0 * asked;
+                    self.calm = Calm::new();
+                } else if self.calm.steps >= PATIENCE {
+                    if self.calm.least > WORTHWHILE * asked {
+                        proposal = self.calm.least.min(2.0 * asked);
+                    }
+                    self.calm = Calm::new();
+                }
                 if outcome.iterations > self.settings.max_iterations / 2 {
                     proposal = proposal.min(step);
                 }
@@ -326,10 +367,25 @@ impl Simulation<'_> {
         let output = &self.solver.system().model().output;
         let mut extra: Vec<LoadEvent> = self.solver.system().load_events().collect();
         extra.retain(|event| event.time > 0.0 && event.time < self.settings.duration);
+        // The statistics of the window are those of whole steps.
+        let window = self.settings.duration - self.settings.statistics_window;
+        if window > 0.0 {
+            extra.push(LoadEvent {
+                time: window,
+                jump: false,
+            });
+        }
         extra.sort_by(|a, b| a.time.total_cmp(&b.time));
+        let bound = |interval: f64| {
+            if output.interpolate {
+                self.settings.duration
+            } else {
+                interval
+            }
+        };
         Events {
-            output: output.interval,
-            field: output.field_interval,
+            output: bound(output.interval),
+            field: bound(output.field_interval),
             extra,
             duration: self.settings.duration,
         }

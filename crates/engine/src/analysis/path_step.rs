@@ -237,7 +237,7 @@ impl<'a> PathWalker<'a> {
             .solve(&self.residual, &mut self.by_residual)
             .ok()?;
         self.solver.load_direction(&self.state, &mut self.by_factor);
-        self.solver.solve_again(&mut self.by_factor);
+        self.solver.solve_for(&mut self.by_factor);
         Some(())
     }
 

@@ -114,7 +114,9 @@ impl PrescribedMotion {
                             let change = leg.velocity[k] - before[k];
                             value[k] += change * leg.ramp * integral;
                             rate[k] += change * step;
-                            curve[k] += change * slope / leg.ramp;
+                            if leg.ramp > 0.0 {
+                                curve[k] += change * slope / leg.ramp;
+                            }
                         }
                         before = leg.velocity;
                     }

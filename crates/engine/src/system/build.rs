@@ -6,6 +6,7 @@ use catenix_model::{
 };
 use catenix_numerics::{Chain, Topology, Vector3};
 
+use super::carry::Followers;
 use super::{Frame, FrameLump, LineLayout, System, SystemError, loads, shape};
 use crate::body::lump::Lump;
 use crate::body::motion::PrescribedMotion;
@@ -74,7 +75,9 @@ pub(super) fn build(model: &Model) -> Result<System, SystemError> {
     let reference_force = reference_force(model, &frames, &lumps, reference_length);
     let places = shape.position.iter().chain(&shape.second);
     let furthest = places.map(|x| x.amax()).fold(1.0, f64::max);
+    let followers = Followers::new(model, &layouts, &frames, &shape);
     Ok(System {
+        followers,
         topology: Topology::new(chains, frames.len()),
         current: CurrentField::new(&model.environment.current),
         model: model.clone(),

@@ -6,6 +6,7 @@
 pub(crate) mod assembly;
 mod balance;
 mod build;
+mod carry;
 mod energy;
 pub(crate) mod frame_kernel;
 pub(crate) mod frames;
@@ -71,6 +72,7 @@ pub struct System {
     pub(crate) current: CurrentField,
     pub(crate) topology: Topology,
     pub(crate) first_shape: Configuration,
+    pub(crate) followers: carry::Followers,
     pub(crate) reference_force: f64,
     pub(crate) reference_length: f64,
     pub(crate) residual_floor: f64,

@@ -1,8 +1,8 @@
 //! The system as the numerics see it: residual, matrix, increment.
 
 use catenix_numerics::{
-    Block6, BlockLu, BlockMatrix, Elimination, ExplicitSystem, Factorisation, ImplicitSystem,
-    Matrix3, MotionState, ResidualSize, TangentWeights, Vector3, Vector6,
+    Block6, BlockLu, BlockMatrix, CarriedMotion, Elimination, ExplicitSystem, Factorisation,
+    ImplicitSystem, Matrix3, MotionState, ResidualSize, TangentWeights, Vector3, Vector6,
 };
 
 use super::System;
@@ -117,7 +117,7 @@ impl<'a> SystemSolver<'a> {
     }
 
     /// x <- S^-1 x with the factors of the last solution.
-    pub(crate) fn solve_again(&mut self, x: &mut [Vector6]) {
+    pub(crate) fn solve_for(&mut self, x: &mut [Vector6]) {
         self.factors.solve(&self.system.topology, x);
     }
 
@@ -220,6 +220,11 @@ impl ImplicitSystem for SystemSolver<'_> {
         self.system.frames.len()
     }
 
+    fn carry(&self, time: f64, carried: &mut CarriedMotion) -> bool {
+        let system = self.system;
+        self.vessels_move && system.followers.carry(&system.vessels, time, carried)
+    }
+
     fn begin(&mut self) {
         self.lines.begin();
     }
@@ -269,6 +274,13 @@ impl ImplicitSystem for SystemSolver<'_> {
             .map_err(|error| error.frame)?;
         increment.iter_mut().for_each(|x| *x = -*x);
         Ok(())
+    }
+
+    fn solve_again(&mut self, residual: &[Vector6], increment: &mut [Vector6]) {
+        for (x, r) in increment.iter_mut().zip(residual) {
+            *x = -r;
+        }
+        self.factors.solve(&self.system.topology, increment);
     }
 
     fn moving(&mut self, increment: &[Vector6]) {

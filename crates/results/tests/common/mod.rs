@@ -54,14 +54,6 @@ impl Sample for Moment {
         self.time
     }
 
-    fn at_output_time(&self) -> bool {
-        true
-    }
-
-    fn at_field_time(&self) -> bool {
-        (self.time / FIELD_INTERVAL_S).fract() == 0.0
-    }
-
     fn channel(&self, target: ChannelTarget) -> f64 {
         channel_value(target, self.time)
     }
@@ -218,6 +210,7 @@ fn model() -> Model {
         output: OutputSettings {
             interval: STEP_S,
             field_interval: FIELD_INTERVAL_S,
+            interpolate: true,
             channels: Vec::new(),
         },
     }

@@ -82,7 +82,7 @@ impl<'m> Collector<'m> {
         for (value, channel) in self.values.iter_mut().zip(&self.channels) {
             *value = view.channel(channel.target);
         }
-        self.extremes.add(&self.values);
+        self.extremes.add(view.time(), &self.values);
         if view.time() >= self.window_start_s {
             self.window.add(view.time(), &self.values);
         }
@@ -92,7 +92,7 @@ impl<'m> Collector<'m> {
         }
         for (index, (values, extremes)) in self.lines.iter_mut().enumerate() {
             view.line_quantities(index, values);
-            extremes.add(values);
+            extremes.add(view.time(), values);
             if snapshot {
                 let nodes = values.len() / LineQuantity::ALL.len();
                 let first = LineQuantity::Curvature.index() * nodes;

@@ -121,6 +121,7 @@ impl<'w> Family<'w> {
     ) -> Result<Family<'w>, Halt> {
         if let Some(dynamics) = &model.dynamics {
             // No output binds the steps of a trial.
+            model.output.interpolate = true;
             model.output.interval = dynamics.duration;
             model.output.field_interval = dynamics.duration;
         }

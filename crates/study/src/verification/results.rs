@@ -8,6 +8,8 @@ use catenix_engine::{
 };
 use catenix_model::{FormulationKind, Line, LoadCase, Model, StepControl, Study, all_channels};
 
+use catenix_results::{Curve, Extremes, OutputTimes};
+
 use super::spec::{Analysis, Origin, Value};
 use crate::case::flow;
 
@@ -244,19 +246,43 @@ fn compute(model: &Model, analysis: Analysis, stop: &dyn Fn() -> bool) -> Result
                 row.push(view.energy().stored());
                 row.extend(momentum.linear.iter());
                 row.extend(momentum.angular.iter());
-                if view.at_output_time() {
-                    table.rows.push(row.clone());
-                }
                 table.steps.push(row);
                 flow(stop())
             })
             .map_err(|error| text(&error))?;
+            table.rows = at_output_times(&table.steps, channels.len(), &model);
             if report.interrupted {
                 return Err(Missing::Failed("interrupted".to_owned()));
             }
         }
     }
     Ok(table)
+}
+
+/// Rows at the output times out of the rows of all steps, which have the time in column `time`.
+fn at_output_times(steps: &[Vec<f64>], time: usize, model: &Model) -> Vec<Vec<f64>> {
+    let columns = steps.first().map_or(0, Vec::len);
+    let duration = model.dynamics.as_ref().map_or(0.0, |d| d.duration);
+    let mut times = OutputTimes::new(model.output.interval, duration);
+    let mut curve = Curve::new(columns);
+    let mut rows = Vec::new();
+    let mut known = f64::NEG_INFINITY;
+    for step in steps {
+        let latest = step[time];
+        curve.push(latest, step);
+        // A stretch is known when the step after it is, and the last one at the end.
+        if latest >= duration * (1.0 - 1e-9) {
+            known = latest;
+        }
+        while let Some(at) = times.due(known, latest) {
+            let mut row = vec![0.0; columns];
+            curve.at(at, &mut row);
+            row[time] = at;
+            rows.push(row);
+        }
+        known = latest;
+    }
+    rows
 }
 
 impl Table {
@@ -293,18 +319,14 @@ impl Table {
                 let time = self.index("time")?;
                 let since = |row: &&Vec<f64>| row[time] >= origin.since - 1e-9;
                 let found = match value {
-                    Value::Min => self
-                        .steps
-                        .iter()
-                        .filter(since)
-                        .map(|r| r[k])
-                        .reduce(f64::min),
-                    Value::Max => self
-                        .steps
-                        .iter()
-                        .filter(since)
-                        .map(|r| r[k])
-                        .reduce(f64::max),
+                    Value::Min | Value::Max => {
+                        let mut extremes = Extremes::new(1);
+                        for row in self.steps.iter().filter(since) {
+                            extremes.add(row[time], &[row[k]]);
+                        }
+                        let [min, max] = [extremes.min[0], extremes.max[0]];
+                        Some(if value == Value::Min { min } else { max })
+                    }
                     Value::Last => self.steps.last().map(|row| row[k]),
                     Value::Mean => self.mean(k, time, origin.since),
                     Value::Drift => self.drift(&origin.result, time, origin.since),
@@ -317,10 +339,12 @@ impl Table {
 
     /// Mean over time since a time, by the trapezoidal rule over the steps.
     fn mean(&self, k: usize, time: usize, since: f64) -> Option<f64> {
-        let rows: Vec<&Vec<f64>> = self
-            .steps
-            .iter()
-            .filter(|row| row[time] >= since - 1e-9)
+        // The start may lie inside a step; there an output time is likely.
+        let start = self.rows.iter().find(|row| row[time] >= since - 1e-9);
+        let steps = self.steps.iter();
+        let rows: Vec<&Vec<f64>> = start
+            .into_iter()
+            .chain(steps.filter(|row| Some(row[time]) > start.map(|start| start[time] + 1e-9)))
             .collect();
         let integral: f64 = rows
             .windows(2)

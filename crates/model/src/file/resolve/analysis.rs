@@ -16,7 +16,7 @@ use crate::{
 use super::Slot;
 
 /// Error per step that is allowed where the file does not say [-]; named in the key's description.
-const DEFAULT_ACCURACY: f64 = 3e-6;
+const DEFAULT_ACCURACY: f64 = 2e-5;
 /// Smallest step where the file does not say [s]; named in the key's description.
 const DEFAULT_MIN_STEP: f64 = 1e-4;
 /// Largest step where the file does not say [s]; named in the key's description.

@@ -153,6 +153,7 @@ pub(super) fn resolve_case(
     let output = OutputSettings {
         interval: table.output.interval.si,
         field_interval: table.output.field_interval.si,
+        interpolate: table.output.interpolate,
         channels,
     };
     let model = Model {

@@ -46,7 +46,7 @@ table! {
         integrator: IntegratorChoice = "generalised-alpha",
         /// Constant step; absent: the step is chosen so that its error stays below `accuracy`.
         step: Option<Positive<Time>>,
-        /// Error allowed per step, as a fraction of the system's reference length; absent: 3e-6.
+        /// Error allowed per step, as a fraction of the system's reference length; absent: 2e-5.
         accuracy: Option<Positive<Dimensionless>>,
         /// Smallest step; absent: 1e-4 s.
         min_step: Option<Positive<Time>>,
@@ -59,7 +59,7 @@ table! {
         /// damped may grow.
         max_order: Option<Count>,
         /// Largest residual force at any element, as a fraction of the system's reference force.
-        tolerance: Positive<Dimensionless> = 1e-6,
+        tolerance: Positive<Dimensionless> = 1e-5,
         /// Most Newton iterations per step before the step is cut.
         max_iterations: Count = 12,
         /// Time at the end over which means and extremes are reported; absent: the longest period

@@ -12,6 +12,9 @@ table! {
         interval: Positive<Time> = "0.1 s",
         /// Interval at which every quantity along every line is recorded.
         field_interval: Positive<Time> = "1 s",
+        /// Whether results at output times are interpolated between steps, to third order; with
+        /// `false`, steps end on output times.
+        interpolate: bool = true,
         /// Channels beyond the standard ones: `<line>.<quantity>@<arc length>`, for example
         /// `hose.bend_moment@132 m`. Quantities are x, y, z, effective_tension, wall_tension,
         /// shear_force, bend_moment, curvature, torque, von_mises_stress and declination.
