@@ -250,7 +250,7 @@ fn compute(model: &Model, analysis: Analysis, stop: &dyn Fn() -> bool) -> Result
                 flow(stop())
             })
             .map_err(|error| text(&error))?;
-            table.rows = at_output_times(&table.steps, channels.len(), &model);
+            table.rows = at_output_times(&table.steps, channels.len(), model);
             if report.interrupted {
                 return Err(Missing::Failed("interrupted".to_owned()));
             }
