@@ -1,8 +1,8 @@
 //! The classic NetCDF file format with 64-bit offsets (CDF-2), written from front to back.
 //!
-//! Written by hand because the crates that write it without a C library (netcdf3 0.6,
-//! netcdf-writer 0.12) hold all data in memory until the end, or want a variable in one piece; the
-//! fields of a long run are larger than that. The format is a header and big-endian numbers.
+//! Written here because the fields of a long run are larger than the memory: they are records that
+//! are written one after the other, straight from the store. The format is a header and big-endian
+//! numbers, which takes less code than a library would take to feed.
 //! Specification: "The NetCDF classic format specification", docs.unidata.ucar.edu/netcdf-c,
 //! appendix B.
 
