@@ -13,8 +13,9 @@ use cargo_metadata::Message;
 use crate::steps::cargo;
 
 /// Units that stand alone in brackets; longer ones (`[N m]`, `[m/s]`) are no links to rustdoc.
-const UNITS: [&str; 16] = [
-    "s", "m", "N", "kg", "rad", "deg", "Pa", "Hz", "W", "J", "K", "m2", "m3", "m4", "kN", "bytes",
+const UNITS: [&str; 17] = [
+    "s", "ns", "m", "N", "kg", "rad", "deg", "Pa", "Hz", "W", "J", "K", "m2", "m3", "m4", "kN",
+    "bytes",
 ];
 
 /// Runs `cargo doc` on the workspace; any warning that is not a unit in brackets is an error.
