@@ -89,7 +89,7 @@ pub trait ImplicitSystem {
     /// Any twice differentiable motion is right. The closer it is to the true one, the smaller are
     /// the errors of a step: only the difference is integrated.
     ///
-    /// Source: docs/theory/integration.md, eq. (21).
+    /// Source: docs/theory/integration.md, eq. (17).
     fn carry(&self, time: f64, carried: &mut CarriedMotion) -> bool {
         let _ = (time, carried);
         false

@@ -5,7 +5,7 @@
 //! masses on these springs. It need not be what happens, only close to it where vessels drive the
 //! motion: the integrator adds the rest.
 //!
-//! Source: docs/theory/integration.md, eqs. (20) to (23).
+//! Source: docs/theory/integration.md, eqs. (16) to (19).
 
 use catenix_model::{EndConnection, Line, LineEnd, Model, SupportRef};
 use catenix_numerics::{CarriedMotion, Configuration, Matrix3, Vector3, Vector6};
@@ -96,7 +96,7 @@ impl Followers {
 
     /// Writes the motion at `time`; returns whether there is any.
     ///
-    /// Source: docs/theory/integration.md, eqs. (21) and (23).
+    /// Source: docs/theory/integration.md, eqs. (17) and (19).
     pub(crate) fn carry(
         &self,
         vessels: &[PrescribedMotion],
@@ -244,7 +244,7 @@ fn softness_along(model: &Model, layout: &LineLayout) -> Vec<f64> {
 /// Stiffness of a line between its ends, along its chord (3 x 3) [N/m]: it stretches, and it gives
 /// its slack against its weight.
 ///
-/// Source: docs/theory/integration.md, eq. (20).
+/// Source: docs/theory/integration.md, eq. (16).
 fn spring(model: &Model, line: &Line, layout: &LineLayout, shape: &Configuration) -> Matrix3 {
     let frames = layout.frames();
     let (first, last) = (frames.start, frames.end.saturating_sub(1));
@@ -266,7 +266,7 @@ fn spring(model: &Model, line: &Line, layout: &LineLayout, shape: &Configuration
 
 /// Per body: which points it follows, and how.
 ///
-/// Source: docs/theory/integration.md, eq. (22).
+/// Source: docs/theory/integration.md, eq. (18).
 fn body_maps(
     springs: &[(Matrix3, [Source; 2])],
     masses: &[f64],
