@@ -2,7 +2,7 @@
 //!
 //! It takes as many steps within each step that it is asked for as its limit of stability needs,
 //! and solves no system of equations but one block of mass at a time.
-//! Source: docs/theory/integration.md, eqs. (20) to (23).
+//! Source: docs/theory/integration.md, eqs. (24) to (27).
 
 use crate::Vector6;
 use crate::implicit::{ImplicitSystem, MotionState, ResidualSize};
@@ -25,7 +25,7 @@ pub trait ExplicitSystem {
 /// Largest stable step over the period of a motion, times its angular frequency, that is damped by
 /// the share `damping` of its critical damping.
 ///
-/// Source: docs/theory/integration.md, eq. (23).
+/// Source: docs/theory/integration.md, eq. (27).
 pub fn stability_limit(damping: f64) -> f64 {
     let twice = 2.0 * damping;
     // 2 (sqrt(1 + 4 xi^2) - 2 xi) without the difference of large numbers.
@@ -83,7 +83,7 @@ impl CentralDifferences {
 
     /// One step of the trial state.
     ///
-    /// Source: docs/theory/integration.md, eq. (20).
+    /// Source: docs/theory/integration.md, eq. (24).
     fn advance_trial(
         &mut self,
         system: &mut dyn ExplicitSystem,
