@@ -75,7 +75,7 @@ fn a_path_is_printed_written_and_drawn() {
             .all(|row| row.split(',').count() == header.split(',').count())
     );
     let figure = std::fs::read_to_string(bench.path("mast.svg")).unwrap();
-    assert!(figure.contains("Load factor") && figure.contains("mast, x@2m [m]"));
+    assert!(figure.contains("Load factor") && figure.contains("mast, x at 2 m [m]"));
     let (code, ..) = bench.run(&[
         "path",
         "mast.toml",

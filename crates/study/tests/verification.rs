@@ -85,6 +85,11 @@ fn every_case_that_lumped_mass_can_do_passes_under_it() {
 }
 
 #[test]
+fn every_case_passes_under_beam_elements() {
+    check_formulation(FormulationKind::Fem, &[]);
+}
+
+#[test]
 fn every_case_passes() {
     let suite = read_suite(&repository_suite()).unwrap();
     let results = in_parallel(&suite, None, |case| {

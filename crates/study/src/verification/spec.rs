@@ -164,6 +164,9 @@ pub(super) struct Convergence {
     pub scale: Option<f64>,
     /// Smallest order that passes.
     pub least_order: f64,
+    /// Errors of at most this size show no order: what is left is not of the mesh or step.
+    #[serde(default)]
+    pub floor: f64,
     /// Why this order is expected.
     pub reason: String,
     /// What is different under other formulations than discrete elements.
@@ -187,6 +190,7 @@ pub(super) struct Under {
 pub(super) struct Special {
     pub tolerance: Option<f64>,
     pub least_order: Option<f64>,
+    pub floor: Option<f64>,
     pub split: Option<usize>,
     pub splits: Option<Vec<usize>>,
     /// Why it is different.
@@ -265,6 +269,7 @@ impl Comparison for Convergence {
 
     fn apply(&mut self, special: &Special) {
         replace(&mut self.least_order, &special.least_order);
+        replace(&mut self.floor, &special.floor);
         replace(&mut self.splits, &special.splits);
         replace(&mut self.reason, &special.reason);
     }
