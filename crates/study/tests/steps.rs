@@ -1,4 +1,5 @@
-//! The sea trial with default steps against much smaller ones.
+//! The sea trial with default steps, and with the mesh and steps of a wanted accuracy, against finer
+//! computations.
 
 // A panic is how a test fails, in its helpers too.
 #![allow(clippy::unwrap_used)]
@@ -23,7 +24,7 @@ fn with(replacements: &[(&str, &str)]) -> String {
 }
 
 /// Computes one case as `catenix run` does.
-fn run(text: &str, case: &str) -> CaseSummary {
+fn run(text: &str, case: &str, accuracy: Option<f64>) -> CaseSummary {
     let study = parse_study(text, "model.toml", Path::new("")).unwrap_or_else(|e| panic!("{e:?}"));
     let case = study.cases.iter().find(|known| known.name == case).unwrap();
     let directory = tempfile::tempdir().unwrap();
@@ -33,7 +34,7 @@ fn run(text: &str, case: &str) -> CaseSummary {
         model_text: text.to_owned(),
     };
     let store = ResultStore::create(directory.path(), &study, &[case], &provenance).unwrap();
-    let summary = compute_case(case, &store, None, &()).unwrap();
+    let summary = compute_case(case, &store, accuracy, &()).unwrap();
     assert_eq!(summary.error, None);
     summary
 }
@@ -81,7 +82,7 @@ fn default_steps_are_long_and_keep_one_per_cent_in_all_six_cases() {
     let fine = with(&[(STEP, "step = \"0.05 s\"\n")]);
     let cases = ["a", "b", "c", "d", "e", "f"];
     let found = in_parallel(&cases, None, |case| {
-        [&free, &fine].map(|text| run(text, case))
+        [&free, &fine].map(|text| run(text, case, None))
     });
     for (case, [free, fine]) in cases.iter().zip(&found) {
         // Steps of 0.05 s have a hundredth of the error of those of 0.4 s, where these are smooth.
@@ -103,3 +104,40 @@ fn default_steps_are_long_and_keep_one_per_cent_in_all_six_cases() {
         assert!(free.energy_imbalance.unwrap().abs() < 1e-3, "{case}");
     }
 }
+
+#[test]
+fn an_accuracy_of_one_per_cent_holds_and_is_cheap() {
+    let fine = with(&[
+        ("elements = 90 }", "elements = 180 }"),
+        ("elements = 200 }", "elements = 400 }"),
+        (STEP, "step = \"0.05 s\"\n"),
+    ]);
+    let jobs = [("a", false), ("f", false), ("a", true), ("f", true)];
+    let found = in_parallel(&jobs, None, |&(case, exact)| {
+        if exact {
+            run(&fine, case, None)
+        } else {
+            run(SEA_TRIAL, case, Some(0.01))
+        }
+    });
+    for ((case, _), (chosen, fine)) in jobs.iter().zip(found.iter().zip(&found[2..])) {
+        let discretisation = chosen.discretisation.as_ref().unwrap();
+        assert!(discretisation.reached, "{case}");
+        let errors = Figures::of(chosen).errors(&Figures::of(fine));
+        // The finer computation has an error of its own, of some 0.1 %.
+        let allowed = [0.011, 0.011, 0.02];
+        for (error, allowed) in errors.iter().zip(allowed) {
+            assert!(*error < allowed, "{case}: {errors:?}");
+        }
+        let elements = discretisation.elements as f64;
+        let steps = chosen.steps.unwrap() as f64 / chosen.simulated_s.unwrap();
+        assert!(
+            elements * steps < MOST_WORK,
+            "{case}: {elements} elements, {steps} steps a second"
+        );
+    }
+}
+
+/// Elements times steps per simulated second: 200 elements at 0.1 s. Most cases take a seventh of
+/// it, 100 elements at 0.35 s.
+const MOST_WORK: f64 = 2000.0;

@@ -4,7 +4,7 @@ use catenix_engine::StepView;
 use catenix_model::{
     Axis, Channel, ChannelTarget, LineQuantity, Model, Reference, Statistic, all_channels,
 };
-use catenix_results::{Extremes, WindowStatistics};
+use catenix_results::{Extremes, RangeGraph, WindowStatistics};
 
 /// Snapshots of the lines that a run keeps to see where they bend.
 const SNAPSHOTS: f64 = 40.0;
@@ -114,7 +114,8 @@ impl<'m> Collector<'m> {
     pub(crate) fn headlines(&self) -> Vec<Headline> {
         let mut list = Headlines {
             collector: self,
-            means: self.window.range_graph().mean,
+            window: self.window.range_graph(),
+            top: self.most_loaded_end(),
             found: Vec::new(),
         };
         list.add_bodies();
@@ -129,12 +130,26 @@ impl<'m> Collector<'m> {
         }
         list.found
     }
+
+    /// Line and end with the largest tension of all.
+    fn most_loaded_end(&self) -> Option<(usize, usize)> {
+        let channels = self.channels.iter().zip(&self.extremes.max);
+        let ends = channels.filter_map(|(channel, tension)| match channel.target {
+            ChannelTarget::EndTension(line, end) if tension.is_finite() => {
+                Some(((line, end), *tension))
+            }
+            _ => None,
+        });
+        ends.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(end, _)| end)
+    }
 }
 
 struct Headlines<'a, 'm> {
     collector: &'a Collector<'m>,
-    /// Mean of each channel over the window (n_channels).
-    means: Vec<f64>,
+    /// Mean and extremes of each channel over the window (n_channels).
+    window: RangeGraph,
+    /// Line and end with the largest tension of all.
+    top: Option<(usize, usize)>,
     found: Vec<Headline>,
 }
 
@@ -175,7 +190,7 @@ impl Headlines<'_, '_> {
     }
 
     fn mean(&self, target: ChannelTarget) -> f64 {
-        self.index(target).map_or(f64::NAN, |k| self.means[k])
+        self.index(target).map_or(f64::NAN, |k| self.window.mean[k])
     }
 
     fn add_bodies(&mut self) {
@@ -206,6 +221,8 @@ impl Headlines<'_, '_> {
         let model = self.collector.model;
         let name = &model.lines[line].name;
         let extremes = &self.collector.extremes;
+        let moves = model.dynamics.is_some();
+        let largest_tension = self.largest_end_tension(line);
         for (end, label) in ["end_a", "end_b"].into_iter().enumerate() {
             let Some(tension) = self.index(ChannelTarget::EndTension(line, end)) else {
                 continue;
@@ -213,7 +230,7 @@ impl Headlines<'_, '_> {
             let force = Axis::ALL.map(|axis| self.mean(ChannelTarget::EndForce(line, end, axis)));
             let (low, high) = (extremes.min[tension], extremes.max[tension]);
             let norm = force.iter().map(|f| f * f).sum::<f64>().sqrt();
-            let scale = low.abs().max(high.abs()).max(norm);
+            let scale = largest_tension.max(norm);
             if norm == 0.0 {
                 continue;
             }
@@ -221,11 +238,18 @@ impl Headlines<'_, '_> {
                 let name = format!("{name}.{label}.force_{}", axis.letter());
                 self.push_statistic(&name, Statistic::Mean, "N", value, scale);
             }
+            let first_extreme = self.found.len();
             let tension = format!("{name}.{label}.effective_tension");
             self.push_statistic(&tension, Statistic::Min, "N", low, scale);
             self.push_statistic(&tension, Statistic::Max, "N", high, scale);
-            if high - low > LEAST_RANGE * scale {
-                self.push(format!("{tension}, range"), "N", high - low, high - low);
+            // The main load of the system steers; the extremes of a slack hose at its joints hang
+            // on how it bends there, and the range of a whole run on the vibrations at its start.
+            let main = self.top == Some((line, end));
+            self.steer_last(self.found.len() - first_extreme, !moves || main);
+            let range = high - low;
+            if range > LEAST_RANGE * scale {
+                self.push(format!("{tension}, range"), "N", range, range);
+                self.steer_last(1, !moves);
             }
         }
         let (_, extremes) = &self.collector.lines[line];
@@ -254,6 +278,22 @@ impl Headlines<'_, '_> {
         }
     }
 
+    /// Says of the last `count` results whether they steer.
+    fn steer_last(&mut self, count: usize, steers: bool) {
+        let first = self.found.len() - count.min(self.found.len());
+        for headline in &mut self.found[first..] {
+            headline.steers = steers;
+        }
+    }
+
+    /// The largest tension at either end of a line [N]; 0 where it has none.
+    fn largest_end_tension(&self, line: usize) -> f64 {
+        let extremes = &self.collector.extremes;
+        let ends = [0, 1].map(|end| self.index(ChannelTarget::EndTension(line, end)));
+        let of_end = |k: usize| extremes.min[k].abs().max(extremes.max[k].abs());
+        ends.into_iter().flatten().map(of_end).fold(0.0, f64::max)
+    }
+
     /// A channel that the model asks for beyond the standard ones.
     fn add_own(&mut self, channel: &Channel) {
         for statistic in [Statistic::Mean, Statistic::Min, Statistic::Max] {
@@ -268,7 +308,7 @@ impl Headlines<'_, '_> {
         let extremes = &self.collector.extremes;
         let (low, high) = (extremes.min[k], extremes.max[k]);
         let value = match statistic {
-            Statistic::Mean => self.means[k],
+            Statistic::Mean => self.window.mean[k],
             Statistic::Min => low,
             Statistic::Max => high,
         };

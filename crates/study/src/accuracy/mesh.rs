@@ -77,6 +77,13 @@ impl Density {
         density
     }
 
+    /// Leaves this share of the elements.
+    pub(super) fn thin_out(&mut self, share: f64) {
+        for density in &mut self.elements_per_metre {
+            *density *= share;
+        }
+    }
+
     /// No section has fewer than a few elements.
     fn raise_to_floor(&mut self, line: &Line) {
         let mut start = 0.0;

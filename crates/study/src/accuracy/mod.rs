@@ -13,7 +13,7 @@ mod mesh;
 use std::collections::BTreeMap;
 
 use catenix_engine::{System, simulate, solve_statics};
-use catenix_model::{Line, LoadCase, Model, Reference, StepControl};
+use catenix_model::{ChannelTarget, Line, LineQuantity, LoadCase, Model, Reference, StepControl};
 use catenix_results::{CaseError, Discretisation, ErrorEstimate};
 
 use crate::case::{Halt, dynamics_halt, flow, statics_halt, system_of};
@@ -23,6 +23,8 @@ use mesh::{Density, remeshed};
 
 /// Elements of each section on the mesh whose solution shows where the lines bend.
 const FIRST_ELEMENTS: f64 = 16.0;
+/// Share of the elements that is enough where no result of bending is wanted.
+const WITHOUT_BENDING: f64 = 0.5;
 /// Rounds of adapting the mesh to the static shape.
 const ROUNDS: usize = 3;
 /// Most splits of an element.
@@ -32,9 +34,9 @@ const MOST_HALVINGS: usize = 8;
 /// Most elements of a mesh that is tried.
 const MOST_ELEMENTS: usize = 50_000;
 /// Local error that the coarsest steps may have, over the system's reference length.
-const COARSEST_STEP_ERROR: f64 = 2e-4;
+const COARSEST_STEP_ERROR: f64 = 1.6e-4;
 /// Largest of the coarsest steps [s].
-const COARSEST_STEP: f64 = 1.0;
+const COARSEST_STEP: f64 = 0.8;
 /// Factor of safety on errors of which the order is observed.
 const SAFETY: f64 = 1.25;
 /// Share of the wanted accuracy that the step may take.
@@ -145,6 +147,11 @@ impl<'w> Family<'w> {
         if dynamics.is_some() {
             family.model.dynamics = dynamics;
             family.adapt()?;
+            if !wants_bending(&family.model, &family.references) {
+                for density in &mut family.densities {
+                    density.thin_out(WITHOUT_BENDING);
+                }
+            }
         }
         Ok(family)
     }
@@ -334,6 +341,20 @@ fn compute<'m>(
         return Err(Halt::Interrupted);
     }
     Ok(collector)
+}
+
+/// Whether a recorded or compared channel is one of bending.
+fn wants_bending(model: &Model, references: &[Reference]) -> bool {
+    let compared = references.iter().map(|reference| &reference.channel);
+    model.output.channels.iter().chain(compared).any(|channel| {
+        use LineQuantity::{BendMoment, Curvature, ShearForce, VonMisesStress};
+        let bends = [BendMoment, Curvature, ShearForce, VonMisesStress];
+        match channel.target {
+            ChannelTarget::LinePoint(_, quantity, _) => bends.contains(&quantity),
+            ChannelTarget::EndMoment(..) => true,
+            _ => false,
+        }
+    })
 }
 
 fn no_estimate() -> CaseError {
