@@ -10,9 +10,9 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use catenix_engine::element::dem::connector::ConnectorState;
-use catenix_engine::element::dem::pair::{RateWeights, Side};
-use catenix_engine::element::dem::stiffness::{ConnectorStiffness, HalfElement};
+use catenix_engine::formulation::dem::element::connector::ConnectorState;
+use catenix_engine::formulation::dem::element::pair::{RateWeights, Side};
+use catenix_engine::formulation::dem::element::stiffness::{ConnectorStiffness, HalfElement};
 use catenix_engine::hydro::current::CurrentField;
 use catenix_engine::hydro::morison::{DragCoefficients, DragMotion, drag, drag_tangent};
 use catenix_engine::system::SystemSolver;

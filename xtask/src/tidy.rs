@@ -11,6 +11,7 @@ mod files;
 mod links;
 mod readme;
 mod sources;
+mod strangers;
 mod theory;
 mod tokens;
 mod web;
@@ -51,6 +52,7 @@ pub(crate) fn check(root: &Path) -> Result<Vec<Violation>, String> {
     let mut violations = arrows::check(root, &files)?;
     violations.extend(dependencies::check(root)?);
     violations.extend(sources::check(&files));
+    violations.extend(strangers::check(&files));
     violations.extend(theory::check(&files));
     violations.extend(links::check(root, &files));
     violations.extend(architecture::check(&files));

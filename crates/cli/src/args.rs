@@ -314,15 +314,17 @@ impl FormulationArg {
 
 impl ValueEnum for FormulationArg {
     fn value_variants<'a>() -> &'a [Self] {
-        const {
-            &[
-                FormulationArg::One(FormulationKind::Dem),
-                FormulationArg::One(FormulationKind::Fem),
-                FormulationArg::One(FormulationKind::FemExact),
-                FormulationArg::One(FormulationKind::Lumped),
-                FormulationArg::All,
-            ]
-        }
+        const KINDS: usize = FormulationKind::ALL.len();
+        const VARIANTS: [FormulationArg; KINDS + 1] = {
+            let mut variants = [FormulationArg::All; KINDS + 1];
+            let mut k = 0;
+            while k < KINDS {
+                variants[k] = FormulationArg::One(FormulationKind::ALL[k]);
+                k += 1;
+            }
+            variants
+        };
+        &VARIANTS
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {

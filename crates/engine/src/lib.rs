@@ -7,8 +7,7 @@
 pub mod analysis;
 pub mod body;
 pub mod contact;
-pub mod element;
-mod formulation;
+pub mod formulation;
 pub mod hydro;
 pub mod load;
 pub mod system;

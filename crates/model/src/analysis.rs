@@ -31,6 +31,16 @@ impl FormulationKind {
             FormulationKind::Lumped => "lumped",
         }
     }
+
+    /// Whether its lines resist being twisted, so that torque and rotations about the line exist.
+    pub fn has_torsion(self) -> bool {
+        self != FormulationKind::Lumped
+    }
+
+    /// Whether every point has a mass for itself, which explicit integrators need.
+    pub fn has_point_masses(self) -> bool {
+        self == FormulationKind::Lumped
+    }
 }
 
 /// How static equilibrium is sought.

@@ -45,3 +45,9 @@ pub type Vector3 = nalgebra::Vector3<f64>;
 pub type Matrix3 = nalgebra::Matrix3<f64>;
 /// Translation part first, then rotation part; at pairs of points, one after the other.
 pub type Vector6 = nalgebra::Vector6<f64>;
+
+/// Force and moment, or another pair of three components, as one vector.
+#[inline]
+pub fn six(upper: &Vector3, lower: &Vector3) -> Vector6 {
+    Vector6::new(upper.x, upper.y, upper.z, lower.x, lower.y, lower.z)
+}

@@ -84,7 +84,7 @@ mod tests {
             file("crates/engine/Cargo.toml", ""),
             file("crates/engine/src/lib.rs", ""),
             file("crates/engine/src/hydro/morison.rs", ""),
-            file("crates/engine/src/element/dem/connector.rs", ""),
+            file("crates/engine/src/body/lump.rs", ""),
             file("crates/engine/tests/statics/main.rs", ""),
         ];
         let found = check(&files);
@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn a_complete_map_passes() {
-        let map = "`crates/engine`: `crates/engine/src/hydro`, `crates/engine/src/element/`.";
+        let map = "`crates/engine`: `crates/engine/src/hydro`, `crates/engine/src/body/`.";
         assert_eq!(missing(map), [""; 0]);
     }
 
@@ -104,7 +104,7 @@ mod tests {
     fn a_missing_crate_or_folder_is_named() {
         let found = missing("`crates/engine` with `crates/engine/src/hydro`");
         assert_eq!(found.len(), 1);
-        assert!(found[0].contains("crates/engine/src/element"), "{found:?}");
+        assert!(found[0].contains("crates/engine/src/body"), "{found:?}");
         assert_eq!(missing("").len(), 3);
     }
 

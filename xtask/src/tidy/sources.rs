@@ -138,9 +138,6 @@ const RULES: &[Rule] = &[
     },
 ];
 
-/// The two halves of the engine that only `system` joins.
-const STRANGERS: [&str; 2] = ["element", "hydro"];
-
 /// Above this, a file usually holds two ideas.
 const MOST_LINES: usize = 600;
 
@@ -177,7 +174,6 @@ pub(crate) fn check(files: &[TextFile]) -> Vec<Violation> {
             Ok(tokens) => {
                 let is_test = is_test_file(&file.path, &test_files);
                 violations.extend(check_rules(&file.path, &tokens, is_test));
-                violations.extend(check_strangers(&file.path, &tokens));
             }
             Err(message) => violations.push(Violation {
                 file: file.path.clone(),
@@ -264,38 +260,6 @@ fn in_paths(wanted: &str, tokens: &[Token]) -> Vec<(usize, bool, String)> {
                 .any(|window| window == wanted)
         })
         .map(|path| (path.line, path.in_test, path.segments.join("::")))
-        .collect()
-}
-
-/// `element` and `hydro` must not name each other, in tests either: what needs both belongs to
-/// `system`.
-fn check_strangers(path: &str, tokens: &[Token]) -> Vec<Violation> {
-    let Some(inside) = path.strip_prefix("crates/engine/src/") else {
-        return Vec::new();
-    };
-    let module = inside.split(['/', '.']).next().unwrap_or(inside);
-    let Some(position) = STRANGERS.iter().position(|&name| name == module) else {
-        return Vec::new();
-    };
-    let other = STRANGERS[1 - position];
-    let reaches_other = |segments: &[String]| {
-        segments.windows(2).any(|window| {
-            ["crate", "super", "catenix_engine"].contains(&window[0].as_str()) && window[1] == other
-        })
-    };
-    tokens::paths(tokens)
-        .into_iter()
-        .filter(|found| reaches_other(&found.segments))
-        .map(|found| Violation {
-            file: path.to_owned(),
-            line: found.line,
-            rule: "element-hydro-strangers",
-            message: format!(
-                "`{}`: `{module}` and `{other}` do not know each other, so that every formulation \
-                 can be loaded by the same water; join them in `system`.",
-                found.segments.join("::")
-            ),
-        })
         .collect()
 }
 
@@ -482,28 +446,6 @@ mod tests {
                 ["no-unfinished-code"],
                 "{name}"
             );
-        }
-    }
-
-    #[test]
-    fn element_and_hydro_are_strangers() {
-        let hydro = "crates/engine/src/hydro/morison.rs";
-        let element = "crates/engine/src/element/dem/connector.rs";
-        let system = "crates/engine/src/system/assembly.rs";
-        for (path, snippet, expected) in [
-            (hydro, "use crate::element::dem::Connector;", 1),
-            (hydro, "use crate::{body, element::dem};", 1),
-            (hydro, "fn f() { super::super::element::g() }", 1),
-            (element, "use crate::hydro::morison;", 1),
-            ("crates/engine/src/element/mod.rs", "use super::hydro;", 1),
-            ("crates/engine/src/element.rs", "use crate::hydro;", 1),
-            (element, "use catenix_numerics::so3;", 0),
-            (element, "fn f(hydro: f64) -> f64 { hydro }", 0),
-            (hydro, "//! Joined with crate::element by system.", 0),
-            (system, "use crate::{element, hydro};", 0),
-        ] {
-            let expected = vec!["element-hydro-strangers"; expected];
-            assert_eq!(broken(path, snippet), expected, "{path}: {snippet}");
         }
     }
 

@@ -1,23 +1,30 @@
 //! The seam behind which the formulations stand: how lines become frames, forces and results.
 //!
-//! A formulation is one folder here (its glue) and one in `element` (its force kernels). It owes
+//! A formulation is one folder here, with its force kernels in the folder `element` below. It owes
 //! three things:
 //!
-//! 1. **the plan**: how many frames a line takes ([`frame_count`]), and what they are
-//!    ([`build`], which returns [`Lines`]: frames, first shape, and the formulation itself);
-//! 2. **[`Formulation`]**, what never changes: where things sit on a line, how stiff it is, what
+//! 1. **`Family`**, its entry in the registry: what it is called, how many frames a line takes,
+//!    and how lines are built (`Lines`: frames, first shape, and the formulation itself);
+//! 2. **`Formulation`**, what never changes: where things sit on a line, how stiff it is, what
 //!    its frames are called;
-//! 3. **[`Evaluation`]**, the lines at one state: residual and iteration matrix, and afterwards,
+//! 3. **`Evaluation`**, the lines at one state: residual and iteration matrix, and afterwards,
 //!    for the state that was assembled last, results at the nodes, forces on the supports,
 //!    energies, momentum, mass.
 //!
 //! Bodies, vessels, lumps, point loads, water, seabed, block solver, integrators and results are
 //! shared. Force kernels are not: otherwise the agreement of two formulations would prove nothing.
+//! No folder here names another; what they share (how a property of a section is read off its
+//! points, `curve.rs`; which way sections point, `directions.rs`) stands beside them.
+//!
+//! A new formulation is a new folder, a line in `FAMILIES`, and a name in the two lists that
+//! readers of model files need for their errors and their schema: `FormulationKind` and
+//! `FormulationChoice` in `catenix-model`. Nothing else asks which formulation it has.
 
-pub(crate) mod dem;
+mod curve;
+pub mod dem;
 pub(crate) mod directions;
-pub(crate) mod fem;
-pub(crate) mod lumped;
+pub mod fem;
+pub mod lumped;
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -32,25 +39,30 @@ use crate::system::{
     Carrier, EnergyTerms, Frame, FrameOwner, LineLayout, Momentum, System, SystemError,
 };
 
-/// Number of frames that a line takes.
-pub(crate) fn frame_count(model: &Model, line: &Line, layout: &LineLayout) -> usize {
-    match model.formulation {
-        FormulationKind::Dem => dem::frame_count(layout),
-        FormulationKind::Lumped => lumped::frame_count(model, line, layout),
-        FormulationKind::Fem | FormulationKind::FemExact => fem::frame_count(line, layout),
-    }
+/// The registry: every formulation that there is.
+const FAMILIES: [Family; 4] = [dem::FAMILY, fem::COROTATIONAL, fem::EXACT, lumped::FAMILY];
+
+/// What the registry knows of a formulation: how a model becomes its lines.
+pub(crate) struct Family {
+    /// Its name in model files.
+    pub kind: FormulationKind,
+    /// Number of frames that a line takes.
+    pub frame_count: fn(&Model, &Line, &LineLayout) -> usize,
+    /// Builds the lines of a model, or refuses what the formulation cannot do
+    /// ([`SystemError::Unusable`], with what to write instead).
+    pub build: fn(&Plan<'_>) -> Result<Lines, SystemError>,
 }
 
-/// Builds the lines of a model.
+/// The registered formulation of a name.
 ///
 /// # Errors
-/// [`SystemError`] where the formulation cannot do what the model asks for.
-pub(crate) fn build(plan: &Plan<'_>) -> Result<Lines, SystemError> {
-    match plan.model.formulation {
-        FormulationKind::Dem => dem::build(plan),
-        FormulationKind::Lumped => lumped::build(plan),
-        FormulationKind::Fem | FormulationKind::FemExact => fem::build(plan),
-    }
+/// [`SystemError::Unusable`] where nothing is registered under it.
+pub(crate) fn family(kind: FormulationKind) -> Result<&'static Family, SystemError> {
+    let found = FAMILIES.iter().find(|family| family.kind == kind);
+    found.ok_or_else(|| SystemError::Unusable {
+        owner: format!("the formulation '{}'", kind.word()),
+        what: "this engine does not have it".to_owned(),
+    })
 }
 
 /// What a formulation is built from.
@@ -228,5 +240,19 @@ pub(crate) trait Evaluation: Debug + Send {
     fn stable_step(&self, at: &Situation<'_>) -> Option<f64> {
         let _ = at;
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_registered_once() {
+        for kind in FormulationKind::ALL {
+            let found = FAMILIES.iter().filter(|family| family.kind == kind);
+            assert_eq!(found.count(), 1, "{}", kind.word());
+        }
+        assert_eq!(FAMILIES.len(), FormulationKind::ALL.len());
     }
 }

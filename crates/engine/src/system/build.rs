@@ -1,8 +1,8 @@
 //! From the model to the assembled system.
 
 use catenix_model::{
-    Attachment, Body, DynamicsSettings, EndConnection, FormulationKind, IntegratorSettings, Line,
-    LineEnd, Model, PointLoad, SupportRef,
+    Attachment, Body, DynamicsSettings, EndConnection, IntegratorSettings, Line, LineEnd, Model,
+    PointLoad, SupportRef,
 };
 use catenix_numerics::{Chain, Topology, Vector3};
 
@@ -24,10 +24,29 @@ pub(super) fn build(model: &Model) -> Result<System, SystemError> {
     if model.lines.is_empty() && model.bodies.is_empty() {
         return Err(SystemError::Empty);
     }
+    let family = formulation::family(model.formulation)?;
+    let vessels: Vec<PrescribedMotion> = model.vessels.iter().map(PrescribedMotion::new).collect();
+    let mut layouts: Vec<LineLayout> = Vec::new();
+    let mut line_frames = 0;
+    for line in &model.lines {
+        let mut layout = lay_out(line, line_frames);
+        layout.frame_count = (family.frame_count)(model, line, &layout);
+        line_frames += layout.frame_count;
+        layouts.push(layout);
+    }
+    let supports = shape::place_supports(model, &vessels, line_frames);
+    let Lines {
+        mut frames,
+        mut shape,
+        formulation,
+    } = (family.build)(&Plan {
+        model,
+        layouts: &layouts,
+        supports: &supports,
+    })?;
     let explicit =
         |dynamics: &DynamicsSettings| dynamics.integrator == IntegratorSettings::Explicit;
-    if model.dynamics.as_ref().is_some_and(explicit) && model.formulation != FormulationKind::Lumped
-    {
+    if model.dynamics.as_ref().is_some_and(explicit) && !formulation.has_mass_of_blocks() {
         return Err(SystemError::Unusable {
             owner: "the explicit integrator".to_owned(),
             what: format!(
@@ -37,25 +56,6 @@ pub(super) fn build(model: &Model) -> Result<System, SystemError> {
             ),
         });
     }
-    let vessels: Vec<PrescribedMotion> = model.vessels.iter().map(PrescribedMotion::new).collect();
-    let mut layouts: Vec<LineLayout> = Vec::new();
-    let mut line_frames = 0;
-    for line in &model.lines {
-        let mut layout = lay_out(line, line_frames);
-        layout.frame_count = formulation::frame_count(model, line, &layout);
-        line_frames += layout.frame_count;
-        layouts.push(layout);
-    }
-    let supports = shape::place_supports(model, &vessels, line_frames);
-    let Lines {
-        mut frames,
-        mut shape,
-        formulation,
-    } = formulation::build(&Plan {
-        model,
-        layouts: &layouts,
-        supports: &supports,
-    })?;
     for (body, support) in model.bodies.iter().zip(&supports.bodies) {
         frames.push(body_frame(model, body));
         shape.position.push(support.position);

@@ -2,12 +2,13 @@
 //! meet.
 
 use catenix_model::Seabed;
-use catenix_numerics::{Block6, Matrix3, MotionState, TangentWeights, Vector3, Vector6, so3::hat};
+use catenix_numerics::{
+    Block6, Matrix3, MotionState, TangentWeights, Vector3, Vector6, six, so3::hat,
+};
 
 use super::{Frame, FrameLump};
 use crate::body::lump::LumpMotion;
 use crate::contact::seabed;
-use crate::element::dem::pair::six;
 use crate::hydro::current::CurrentField;
 use crate::hydro::morison;
 use crate::hydro::submergence::Submergence;

@@ -1,12 +1,11 @@
 //! The system linearised about a state: mass matrix, tangent, structural damping of a small
 //! motion, and what such a motion is at the nodes of a line.
 
-use catenix_numerics::{BlockMatrix, ImplicitSystem, MotionState, TangentWeights, Vector6};
+use catenix_numerics::{BlockMatrix, ImplicitSystem, MotionState, TangentWeights, Vector6, six};
 
 use super::frames::{self, frame_motion};
 use super::solver::SystemSolver;
 use super::{Carrier, Mount};
-use crate::element::dem::pair::six;
 use crate::formulation::Situation;
 
 impl SystemSolver<'_> {

@@ -1,10 +1,9 @@
 //! Point loads on the frames of a system.
 
 use catenix_model::{LoadPlace, PointLoad};
-use catenix_numerics::{BlockMatrix, Configuration, Matrix3, MotionState, Vector3, Vector6};
+use catenix_numerics::{BlockMatrix, Configuration, Matrix3, MotionState, Vector3, Vector6, six};
 
 use super::{LineLayout, System};
-use crate::element::dem::pair::six;
 use crate::formulation::{Formulation, Spot};
 use crate::load::point::FramePoint;
 

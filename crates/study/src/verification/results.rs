@@ -98,7 +98,7 @@ impl<'a> Results<'a> {
             (Analysis::Modes, "frequency") if number > 0 => {
                 return pick(Some(&table.frequencies_hz), "Hz");
             }
-            (Analysis::Modes, "rotation") if formulation == FormulationKind::Lumped => {
+            (Analysis::Modes, "rotation") if !formulation.has_torsion() => {
                 return Err(Missing::Refused("lumped mass has no torsion".to_owned()));
             }
             (Analysis::Modes, "rotation") if number > 0 => {
@@ -110,7 +110,7 @@ impl<'a> Results<'a> {
             _ => {}
         }
         let (value, unit) = table.value(computation.analysis, origin)?;
-        if value.is_nan() && formulation == FormulationKind::Lumped {
+        if value.is_nan() && !formulation.has_torsion() {
             let text = format!("lumped mass has no `{}`", origin.result);
             return Err(Missing::Refused(text));
         }

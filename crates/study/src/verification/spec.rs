@@ -1,5 +1,7 @@
 //! The keys of `case.toml`.
 
+use std::collections::BTreeMap;
+
 use catenix_model::FormulationKind;
 use catenix_results::VerifiedNumber;
 use serde::Deserialize;
@@ -174,14 +176,31 @@ pub(super) struct Convergence {
     pub under: Under,
 }
 
-/// What a comparison has its own of under another formulation.
+/// What a comparison has its own of under other formulations, by their words; what stands under the
+/// word before a hyphen holds for every formulation of that family which has no own.
 #[derive(Debug, Clone, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Under {
-    /// Lumped mass.
-    lumped: Option<Special>,
-    /// Finite elements of both kinds.
-    fem: Option<Special>,
+#[serde(try_from = "BTreeMap<String, Special>")]
+pub(super) struct Under(BTreeMap<String, Special>);
+
+/// The part of a formulation's word before a hyphen.
+fn family(word: &str) -> &str {
+    word.split_once('-').map_or(word, |(family, _)| family)
+}
+
+impl TryFrom<BTreeMap<String, Special>> for Under {
+    type Error = String;
+
+    fn try_from(specials: BTreeMap<String, Special>) -> Result<Self, String> {
+        let words = FormulationKind::ALL.map(FormulationKind::word);
+        let known = |word: &String| words.iter().any(|own| own == word || family(own) == word);
+        match specials.keys().find(|word| !known(word)) {
+            Some(word) => Err(format!(
+                "no formulation is called `{word}`; write one of {}",
+                words.join(", ")
+            )),
+            None => Ok(Under(specials)),
+        }
+    }
 }
 
 /// What is different under a formulation: each key that is given replaces that of the comparison.
@@ -201,11 +220,8 @@ pub(super) struct Special {
 
 impl Under {
     fn of(&self, formulation: FormulationKind) -> Option<&Special> {
-        match formulation {
-            FormulationKind::Dem => None,
-            FormulationKind::Fem | FormulationKind::FemExact => self.fem.as_ref(),
-            FormulationKind::Lumped => self.lumped.as_ref(),
-        }
+        let word = formulation.word();
+        self.0.get(word).or_else(|| self.0.get(family(word)))
     }
 }
 

@@ -6,9 +6,9 @@ use catenix_model::{EndConnection, Joint, SupportRef};
 use catenix_numerics::{Matrix3, Vector3, so3};
 
 use super::super::Plan;
+use super::element::joint::{DotLaw, DotSpring, JointStiffness};
 use super::slide::Slide;
 use super::{Connector, ConnectorLaw, Place, half, natural, node_stiffness};
-use crate::element::dem::joint::{DotLaw, DotSpring, JointStiffness};
 use crate::system::Mount;
 
 /// The connection of a line's end to a vessel or body.

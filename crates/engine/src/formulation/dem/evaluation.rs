@@ -5,11 +5,11 @@ use std::sync::Arc;
 use catenix_numerics::{BlockMatrix, Matrix3, TangentWeights, Vector3, Vector6};
 
 use super::super::{Evaluation, NodeResult, Situation};
+use super::element::connector::Prediction;
+use super::element::pair::RateWeights;
 use super::links::Links;
 use super::pairs::{EvaluatedPair, scatter};
 use super::{ConnectorLaw, Dem, element_end, nodes};
-use crate::element::dem::connector::Prediction;
-use crate::element::dem::pair::RateWeights;
 use crate::system::frame_kernel::{add_frames, frame_energies};
 use crate::system::frames::{self, frame_motion};
 use crate::system::{Carrier, EnergyTerms, Momentum, Mount, System};

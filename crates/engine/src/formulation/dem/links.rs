@@ -5,9 +5,9 @@ use catenix_numerics::lanes::{Kernel, Lane, MOST_LANES, Mat3, Row, Vec3, lane_co
 use catenix_numerics::{BlockMatrix, MotionState, TangentWeights, Vector3, Vector6};
 
 use super::super::Situation;
+use super::element::connector::predicted_force;
+use super::element::pair_kernel::{PairGeometry, PairLaw, PairTangents, PairWeights};
 use super::{Carrier, Connector, ConnectorLaw, Place};
-use crate::element::dem::connector::predicted_force;
-use crate::element::dem::pair_kernel::{PairGeometry, PairLaw, PairTangents, PairWeights};
 
 const NO_ROW: Row = [0.0; MOST_LANES];
 
@@ -435,9 +435,9 @@ mod tests {
     use super::super::Mount;
     use super::super::pairs::{EvaluatedPair, scatter};
     use super::*;
-    use crate::element::dem::connector::Prediction;
-    use crate::element::dem::pair::RateWeights;
-    use crate::element::dem::stiffness::ConnectorStiffness;
+    use crate::formulation::dem::element::connector::Prediction;
+    use crate::formulation::dem::element::pair::RateWeights;
+    use crate::formulation::dem::element::stiffness::ConnectorStiffness;
     use crate::system::tangent_test::moving_system;
 
     /// A chain through all frames of a system, whatever these are.

@@ -1,6 +1,7 @@
 //! The discrete element method: every element is a rigid frame, and connectors between them carry
-//! all stiffness (`crate::element::dem`).
+//! all stiffness (`element`).
 
+pub mod element;
 mod ends;
 mod evaluation;
 mod links;
@@ -12,14 +13,14 @@ mod slide;
 
 use std::sync::Arc;
 
-use catenix_model::{Line, LineEnd, LineType, Model};
+use catenix_model::{FormulationKind, Line, LineEnd, LineType, Model};
 use catenix_numerics::{Configuration, Matrix3, Vector3};
 
-use super::{Evaluation, Formulation, Lines, Plan, Situation, Spot};
-use crate::element::dem::joint::JointStiffness;
-use crate::element::dem::stiffness::{ConnectorStiffness, HalfElement, rotary_share};
+use super::{Evaluation, Family, Formulation, Lines, Plan, Situation, Spot};
 use crate::hydro::morison::DragCoefficients;
 use crate::system::{Carrier, Frame, FrameOwner, LineLayout, Mount, SystemError};
+use element::joint::JointStiffness;
+use element::stiffness::{ConnectorStiffness, HalfElement, rotary_share};
 use ends::end_connector;
 use evaluation::DemEvaluation;
 use slide::Slide;
@@ -116,13 +117,15 @@ fn node_stiffness(model: &Model, layout: &LineLayout, node: usize) -> ConnectorS
     }
 }
 
-/// One frame per element.
-pub(super) fn frame_count(layout: &LineLayout) -> usize {
-    layout.element_count
-}
+/// Its entry in the registry: one frame per element.
+pub(super) const FAMILY: Family = Family {
+    kind: FormulationKind::Dem,
+    frame_count: |_, _, layout| layout.element_count,
+    build,
+};
 
 /// Builds frames and connectors.
-pub(super) fn build(plan: &Plan<'_>) -> Result<Lines, SystemError> {
+fn build(plan: &Plan<'_>) -> Result<Lines, SystemError> {
     let model = plan.model;
     let mut frames = Vec::new();
     for layout in plan.layouts {

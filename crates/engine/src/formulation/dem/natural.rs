@@ -5,8 +5,8 @@
 use catenix_model::{Joint, Line, LineEnd, Model};
 use catenix_numerics::{Matrix3, Vector3, so3};
 
+use super::element::stiffness::ConnectorStiffness;
 use super::node_stiffness;
-use crate::element::dem::stiffness::ConnectorStiffness;
 use crate::formulation::directions::{about_x, wanted_axes};
 pub(super) use crate::formulation::directions::{
     connection_axes, has_directions, is_curved, reference_end,

@@ -1,13 +1,12 @@
 //! Results at the nodes of a line, from the connectors there.
 
 use catenix_model::Model;
-use catenix_numerics::{Vector3, Vector6};
+use catenix_numerics::{Vector3, Vector6, six};
 
 use super::super::{NodeResult, Situation};
 use super::ConnectorLaw;
 use super::evaluation::DemEvaluation;
 use super::pairs::{EvaluatedPair, PairState};
-use crate::element::dem::pair::six;
 use crate::system::LineLayout;
 
 /// Force and moment (about the connection point) of a line on what its end is connected to.

@@ -4,11 +4,11 @@
 use catenix_numerics::{Block6, BlockMatrix, Matrix3, Topology, Vector3, Vector6};
 
 use super::super::Situation;
+use super::element::connector::{ConnectorState, Prediction};
+use super::element::joint::JointState;
+use super::element::pair::{PairForces, PairTangent, RateWeights, Sensitivity, Side};
 use super::slide::SlideState;
 use super::{Connector, ConnectorLaw, Place};
-use crate::element::dem::connector::{ConnectorState, Prediction};
-use crate::element::dem::joint::JointState;
-use crate::element::dem::pair::{PairForces, PairTangent, RateWeights, Sensitivity, Side};
 use crate::system::{Carrier, Mount};
 
 /// A connector of either kind at one configuration.

@@ -8,7 +8,7 @@
 
 use catenix_numerics::{Matrix3, Vector3};
 
-use crate::element::dem::pair::{PairTangent, Sensitivity, Side};
+use super::element::pair::{PairTangent, Sensitivity, Side};
 
 /// A connector's freedom to slide.
 #[derive(Debug, Clone, Copy)]

@@ -4,10 +4,10 @@ use catenix_numerics::so3::hat;
 use catenix_numerics::{Block6, BlockMatrix, Matrix3, TangentWeights, Topology, Vector3, Vector6};
 
 use super::super::Situation;
+use super::element::ends::{Blocks, ElementForces, ElementTangent, End};
+use super::element::field::{Carried, ElementBlocks, FieldWeights};
+use super::element::joint::Support;
 use super::{EndJoint, Part, Place, Rotary, Seat};
-use crate::element::fem::ends::{Blocks, ElementForces, ElementTangent, End};
-use crate::element::fem::field::{Carried, ElementBlocks, FieldWeights};
-use crate::element::fem::joint::Support;
 use crate::system::frames::frame_motion;
 use crate::system::{Carrier, Mount};
 

@@ -7,9 +7,9 @@ use catenix_numerics::{Matrix3, Vector3, so3};
 
 use super::super::Plan;
 use super::super::directions::{connection_axes, has_directions, reference_end};
+use super::element::joint::{Direction, Hold, JointSprings};
+use super::element::section::ElementSection;
 use super::{EndJoint, Place, Seat};
-use crate::element::fem::joint::{Direction, Hold, JointSprings};
-use crate::element::fem::section::ElementSection;
 use crate::system::Mount;
 
 /// Stiffness of the springs of a joint over that of the element next to them.

@@ -6,13 +6,13 @@ use catenix_numerics::{BlockMatrix, Matrix3, TangentWeights, Vector3, Vector6};
 
 use super::super::{Evaluation, NodeResult, Situation};
 use super::assembly::add_internal;
+use super::element::ends::{Blocks, End, Prediction};
+use super::element::field::{Carried, ElementBlocks, Field, POINT_COUNT};
+use super::element::joint::{JointState, Support};
+use super::element::weight::Couples;
 use super::kernel::Kernel;
 use super::load::SeaLoad;
 use super::{EndJoint, Fem, Idle, Part, Seat, nodes};
-use crate::element::fem::ends::{Blocks, End, Prediction};
-use crate::element::fem::field::{Carried, ElementBlocks, Field, POINT_COUNT};
-use crate::element::fem::joint::{JointState, Support};
-use crate::element::fem::weight::Couples;
 use crate::system::frames::{LoadPowers, frame_motion};
 use crate::system::{Carrier, EnergyTerms, Momentum, System};
 

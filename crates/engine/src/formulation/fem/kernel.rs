@@ -4,15 +4,18 @@ use std::fmt::Debug;
 
 use catenix_numerics::Vector3;
 
-use crate::element::fem::corotational::{Corotational, CorotationalState};
-use crate::element::fem::ends::{ElementForces, ElementTangent, End, Prediction};
-use crate::element::fem::exact::{Exact, ExactState};
-use crate::element::fem::section::ElementSection;
+use super::element::corotational::{Corotational, CorotationalState};
+use super::element::ends::{ElementForces, ElementTangent, End, Prediction};
+use super::element::exact::{Exact, ExactState};
+use super::element::section::ElementSection;
 
 /// A beam element between two ends.
 pub(super) trait Kernel: Debug + Clone + Send + Sync + 'static {
     /// The element at one configuration.
     type State: Debug + Clone + Copy + Send;
+
+    /// Whether the element's rotations are determined only by its bending stiffness.
+    const NEEDS_BENDING: bool;
 
     fn new(section: ElementSection) -> Self;
 
@@ -35,9 +38,11 @@ pub(super) trait Kernel: Debug + Clone + Send + Sync + 'static {
 }
 
 macro_rules! kernel {
-    ($element:ty, $state:ty) => {
+    ($element:ty, $state:ty, needs_bending: $needs_bending:literal) => {
         impl Kernel for $element {
             type State = $state;
+
+            const NEEDS_BENDING: bool = $needs_bending;
 
             fn new(section: ElementSection) -> Self {
                 <$element>::new(section)
@@ -90,5 +95,5 @@ macro_rules! kernel {
     };
 }
 
-kernel!(Corotational, CorotationalState);
-kernel!(Exact, ExactState);
+kernel!(Corotational, CorotationalState, needs_bending: false);
+kernel!(Exact, ExactState, needs_bending: true);

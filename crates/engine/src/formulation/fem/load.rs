@@ -5,8 +5,8 @@
 use catenix_model::{LineType, Model};
 use catenix_numerics::{Matrix3, Vector3};
 
+use super::element::field::{LoadTangent, SpreadLoad, Station};
 use crate::contact::seabed::{self, Contact};
-use crate::element::fem::field::{LoadTangent, SpreadLoad, Station};
 use crate::hydro::morison::{self, DragCoefficients, DragMotion};
 use crate::hydro::submergence::Submergence;
 use crate::system::frames::{LoadPowers, Sea};

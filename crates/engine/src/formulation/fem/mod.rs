@@ -1,5 +1,5 @@
 //! The finite element method: nodes with position and rotation, beam elements between them
-//! (`crate::element::fem`), inertia and loads spread over the elements.
+//! (`element`), inertia and loads spread over the elements.
 //!
 //! A node is a frame of the state. A fixed end has no node of its own: it is a point of the vessel
 //! or body that carries it. A node on a vessel through another joint is where the vessel has it, and
@@ -8,6 +8,7 @@
 //! Source: docs/theory/fem.md.
 
 mod assembly;
+pub mod element;
 mod ends;
 mod evaluation;
 mod kernel;
@@ -20,13 +21,13 @@ use std::sync::Arc;
 use catenix_model::{FormulationKind, Line, Model};
 use catenix_numerics::{Configuration, Matrix3, Vector3};
 
-use super::{Evaluation, Formulation, Lines, Plan, Situation, Spot};
-use crate::element::fem::corotational::Corotational;
-use crate::element::fem::exact::Exact;
-use crate::element::fem::joint::JointSprings;
-use crate::element::fem::section::ElementSection;
+use super::{Evaluation, Family, Formulation, Lines, Plan, Situation, Spot};
 use crate::hydro::morison::DragCoefficients;
 use crate::system::{Carrier, Frame, FrameOwner, LineLayout, Mount, SystemError};
+use element::corotational::Corotational;
+use element::exact::Exact;
+use element::joint::JointSprings;
+use element::section::ElementSection;
 use evaluation::FemEvaluation;
 use kernel::Kernel;
 use load::Spread;
@@ -133,25 +134,28 @@ struct Fem<K> {
     lines: Vec<FemLine>,
 }
 
+/// The entry of the corotational beam in the registry.
+pub(super) const COROTATIONAL: Family = Family {
+    kind: FormulationKind::Fem,
+    frame_count,
+    build: build::<Corotational>,
+};
+
+/// The entry of the geometrically exact beam.
+pub(super) const EXACT: Family = Family {
+    kind: FormulationKind::FemExact,
+    frame_count,
+    build: build::<Exact>,
+};
+
 /// One frame per node, but none where the end is fixed.
-pub(super) fn frame_count(line: &Line, layout: &LineLayout) -> usize {
+fn frame_count(_: &Model, line: &Line, layout: &LineLayout) -> usize {
     let carried = line.ends.iter().filter(|end| ends::is_carried(end)).count();
     (layout.element_count + 1).saturating_sub(carried)
 }
 
-/// Builds nodes and elements.
-pub(super) fn build(plan: &Plan<'_>) -> Result<Lines, SystemError> {
-    for (line, layout) in plan.model.lines.iter().zip(plan.layouts) {
-        check(plan.model, line, layout)?;
-    }
-    match plan.model.formulation {
-        FormulationKind::FemExact => Ok(build_with::<Exact>(plan)),
-        _ => Ok(build_with::<Corotational>(plan)),
-    }
-}
-
 /// Refuses what the elements cannot do.
-fn check(model: &Model, line: &Line, layout: &LineLayout) -> Result<(), SystemError> {
+fn check<K: Kernel>(model: &Model, line: &Line, layout: &LineLayout) -> Result<(), SystemError> {
     let refuse = |what: String| {
         Err(SystemError::Unusable {
             owner: format!("line '{}'", line.name),
@@ -182,7 +186,7 @@ fn check(model: &Model, line: &Line, layout: &LineLayout) -> Result<(), SystemEr
             ));
         }
         let chain = line_type.bending_stiffness.iter().any(|&own| own <= 0.0);
-        if model.formulation == FormulationKind::FemExact && chain {
+        if K::NEEDS_BENDING && chain {
             return refuse(format!(
                 "line type '{name}' has no bending stiffness, without which the rotations of \
                  geometrically exact elements are not determined; give it one, or use formulation \
@@ -193,10 +197,14 @@ fn check(model: &Model, line: &Line, layout: &LineLayout) -> Result<(), SystemEr
     Ok(())
 }
 
-fn build_with<K: Kernel>(plan: &Plan<'_>) -> Lines
+/// Builds nodes and elements.
+fn build<K: Kernel>(plan: &Plan<'_>) -> Result<Lines, SystemError>
 where
     Fem<K>: Formulation,
 {
+    for (line, layout) in plan.model.lines.iter().zip(plan.layouts) {
+        check::<K>(plan.model, line, layout)?;
+    }
     let mut fem = Fem::<K> {
         kernels: Vec::new(),
         parts: Vec::new(),
@@ -210,11 +218,11 @@ where
     for line in 0..plan.model.lines.len() {
         fem.add_line(plan, line, &mut frames, &mut shape);
     }
-    Lines {
+    Ok(Lines {
         frames,
         shape,
         formulation: Arc::new(fem),
-    }
+    })
 }
 
 impl<K: Kernel> Fem<K> {

@@ -6,11 +6,11 @@ use catenix_model::LineType;
 use catenix_numerics::{Matrix3, Vector3, Vector6};
 
 use super::super::{NodeResult, Situation};
+use super::element::ends::End;
+use super::element::field::Carried;
 use super::evaluation::FemEvaluation;
 use super::kernel::Kernel;
-use crate::element::curve::Curve;
-use crate::element::fem::ends::End;
-use crate::element::fem::field::Carried;
+use crate::formulation::curve::Curve;
 use crate::system::LineLayout;
 
 /// Force and moment in a section, of the part towards end B on the part towards end A.

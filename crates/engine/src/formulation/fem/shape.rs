@@ -5,7 +5,7 @@ use catenix_numerics::{Matrix3, Vector3, so3};
 
 use super::super::Plan;
 use super::super::directions::{about_x, has_directions, is_curved, reference_end, wanted_axes};
-use crate::element::fem::section::ElementSection;
+use super::element::section::ElementSection;
 use crate::system::LineLayout;
 use crate::system::shape::{Supports, line_points, loose_direction, net_direction, surface};
 

@@ -2,12 +2,11 @@
 //!
 //! Source: docs/theory/lumped.md, eqs. (15) to (17), (23) and (24).
 
-use catenix_numerics::{BlockMatrix, Matrix3, TangentWeights, Vector3, Vector6, so3::hat};
+use catenix_numerics::{BlockMatrix, Matrix3, TangentWeights, Vector3, Vector6, six, so3::hat};
 
 use super::super::Situation;
 use super::LumpedLine;
 use super::evaluation::LumpedEvaluation;
-use crate::element::dem::pair::six;
 use crate::system::Carrier;
 
 impl LumpedEvaluation {

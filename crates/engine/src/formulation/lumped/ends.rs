@@ -5,8 +5,8 @@
 use catenix_numerics::{Matrix3, TangentWeights, Vector3, so3::hat};
 
 use super::super::Situation;
+use super::element::guide::Guide;
 use crate::body::motion::RigidMotion;
-use crate::element::lumped::guide::Guide;
 use crate::system::Carrier;
 
 /// How an end is held.

@@ -3,17 +3,16 @@
 use std::sync::Arc;
 
 use catenix_numerics::so3::hat;
-use catenix_numerics::{Block6, BlockMatrix, Matrix3, TangentWeights, Vector3, Vector6};
+use catenix_numerics::{Block6, BlockMatrix, Matrix3, TangentWeights, Vector3, Vector6, six};
 
 use super::super::{Evaluation, NodeResult, Situation};
 use super::assembly::Band;
+use super::element::bend::BendState;
+use super::element::guide::GuideState;
+use super::element::spring::SpringState;
 use super::ends::TieState;
 use super::loads::{NodeLoad, NodeMotion};
 use super::{Lumped, LumpedLine, limits, nodes};
-use crate::element::dem::pair::six;
-use crate::element::lumped::bend::BendState;
-use crate::element::lumped::guide::GuideState;
-use crate::element::lumped::spring::SpringState;
 use crate::system::{Carrier, EnergyTerms, Momentum, System};
 
 /// Points, springs and ends as last evaluated.

@@ -1,9 +1,10 @@
 //! The lumped-mass method: nodes carry the mass of the half elements beside them, elements are
-//! springs, bending acts over three nodes (`crate::element::lumped`). There is no torsion.
+//! springs, bending acts over three nodes (`element`). There is no torsion.
 
 mod arrangement;
 mod assembly;
 mod bodies;
+pub mod element;
 mod ends;
 mod evaluation;
 mod limits;
@@ -14,17 +15,17 @@ mod refusals;
 use std::ops::Range;
 use std::sync::Arc;
 
-use catenix_model::{EndConnection, Joint, Line, LineEnd, LineType, Model};
+use catenix_model::{EndConnection, FormulationKind, Joint, Line, LineEnd, LineType, Model};
 use catenix_numerics::{Configuration, Matrix3, MotionState, Vector3, Vector6};
 
-use super::{Evaluation, Formulation, Lines, Plan, Situation, Spot};
-use crate::element::lumped::bend::BendStiffness;
-use crate::element::lumped::guide::Guide;
-use crate::element::lumped::spring::Spring;
+use super::{Evaluation, Family, Formulation, Lines, Plan, Situation, Spot};
 use crate::hydro::morison::DragCoefficients;
 use crate::system::shape::line_points;
 use crate::system::{Carrier, Frame, FrameOwner, LineLayout, SystemError};
 use arrangement::Arrangement;
+use element::bend::BendStiffness;
+use element::guide::Guide;
+use element::spring::Spring;
 use ends::{Held, Tie};
 use evaluation::LumpedEvaluation;
 use loads::NodeProperties;
@@ -104,14 +105,21 @@ fn arrange(model: &Model, line: &Line, elements: usize) -> Result<Arrangement, S
     })
 }
 
+/// Its entry in the registry.
+pub(super) const FAMILY: Family = Family {
+    kind: FormulationKind::Lumped,
+    frame_count,
+    build,
+};
+
 /// Two nodes per block.
-pub(super) fn frame_count(model: &Model, line: &Line, layout: &LineLayout) -> usize {
+fn frame_count(model: &Model, line: &Line, layout: &LineLayout) -> usize {
     // A line that cannot be arranged is refused when it is built.
     arrange(model, line, layout.element_count).map_or(1, |own| own.block_count())
 }
 
 /// Builds points and springs.
-pub(super) fn build(plan: &Plan<'_>) -> Result<Lines, SystemError> {
+fn build(plan: &Plan<'_>) -> Result<Lines, SystemError> {
     let model = plan.model;
     refusals::check(model)?;
     let mut lumped = Lumped {

@@ -2,12 +2,11 @@
 //!
 //! Source: docs/theory/lumped.md, eqs. (29) and (30).
 
-use catenix_numerics::{Vector3, Vector6};
+use catenix_numerics::{Vector3, Vector6, six};
 
 use super::super::{NodeResult, Situation};
 use super::LumpedLine;
 use super::evaluation::LumpedEvaluation;
-use crate::element::dem::pair::six;
 use crate::system::LineLayout;
 
 /// Force and moment (about the connection point) of a line on what its end is connected to.
@@ -144,7 +143,10 @@ fn end_node(
     // A clamp holds the direction of the line.
     if matches!(
         &held.guide,
-        Some((_, crate::element::lumped::guide::Guide::Along(_)))
+        Some((
+            _,
+            crate::formulation::lumped::element::guide::Guide::Along(_)
+        ))
     ) && is_clamp(at, index, end)
     {
         result.axis = held.direction(&held.seat(at));

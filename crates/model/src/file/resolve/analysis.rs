@@ -92,7 +92,7 @@ pub(super) fn dynamics(
     formulation: FormulationKind,
     log: &mut Log,
 ) -> DynamicsSettings {
-    if table.integrator == IntegratorChoice::Explicit && formulation != FormulationKind::Lumped {
+    if table.integrator == IntegratorChoice::Explicit && !formulation.has_point_masses() {
         let message = format!(
             "the integrator `explicit` needs a mass at each point for itself, which the formulation \
              `{}` does not have",

@@ -5,7 +5,7 @@
 use catenix_model::{LineType, NaturalShape};
 use catenix_numerics::Vector3;
 
-use crate::element::curve::Curve;
+use crate::formulation::curve::Curve;
 
 /// Stiffness of one element.
 #[derive(Debug, Clone, PartialEq)]

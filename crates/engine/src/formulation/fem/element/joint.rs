@@ -7,7 +7,7 @@
 //!
 //! Source: docs/theory/fem.md, eqs. (32) to (34).
 
-use catenix_numerics::{Block6, Matrix3, Vector3, Vector6, so3::hat};
+use catenix_numerics::{Block6, Matrix3, Vector3, Vector6, six, so3::hat};
 
 /// What holds two directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -239,8 +239,4 @@ impl Direction {
     fn global(&self, support: &Support, rotation: &Matrix3) -> (Vector3, Vector3) {
         (support.rotation * self.on_support, rotation * self.on_node)
     }
-}
-
-fn six(force: &Vector3, moment: &Vector3) -> Vector6 {
-    Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z)
 }

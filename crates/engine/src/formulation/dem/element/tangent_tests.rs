@@ -7,7 +7,7 @@ use super::joint::{DotLaw, DotSpring, JointState, JointStiffness};
 use super::law::{BendLaw, GeneralLaw};
 use super::pair::{PairForces, PairTangent, RateWeights, Sensitivity, Side};
 use super::stiffness::ConnectorStiffness;
-use crate::element::curve::Curve;
+use crate::formulation::curve::Curve;
 
 /// A frame with a connection point, as the system holds it.
 #[derive(Clone, Copy)]

@@ -8,7 +8,7 @@ use super::exact::{Exact, ExactState};
 use super::joint::{Direction, Hold, JointSprings, JointState, Support};
 use super::section::{ElementSection, SectionLaws};
 use super::weight::Couples;
-use crate::element::curve::Curve;
+use crate::formulation::curve::Curve;
 
 /// An end of a small element, moved by an increment; velocities follow with a factor.
 fn moved(end: &End, d: &Vector6, velocity: f64) -> End {

@@ -1,6 +1,6 @@
 //! What every connector sees of the two frames it joins, and what it gives back.
 
-use catenix_numerics::{Matrix3, Vector3, Vector6};
+use catenix_numerics::{Matrix3, Vector3, Vector6, six};
 
 /// One side of a connector: the frame it is fixed to, seen at the connection point.
 #[derive(Debug, Clone, Copy)]
@@ -107,10 +107,4 @@ pub struct RateWeights {
     pub velocity: f64,
     /// Factor on the rotation increments of the first and second frame.
     pub rotation: [Matrix3; 2],
-}
-
-/// Force and moment as one vector.
-#[inline]
-pub fn six(force: &Vector3, moment: &Vector3) -> Vector6 {
-    Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z)
 }

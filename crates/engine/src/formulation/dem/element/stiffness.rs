@@ -7,7 +7,7 @@ use catenix_numerics::{Matrix3, Vector3, so3};
 
 use super::law::{BendLaw, GeneralLaw};
 use super::pair::Side;
-use crate::element::curve::Curve;
+use crate::formulation::curve::Curve;
 
 /// Shear compliance of a shear-rigid element over its bending compliance l^3 / 12 EI. The rotary
 /// inertia makes up for it ([`rotary_share`]), so its dispersion is of fourth order.

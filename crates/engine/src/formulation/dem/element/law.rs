@@ -3,7 +3,7 @@
 //!
 //! Source: docs/theory/sections.md, eqs. (5) to (12).
 
-use crate::element::curve::Curve;
+use crate::formulation::curve::Curve;
 
 /// The general part of a connector's law. A connector without it is straight, linear and the same
 /// about all normal axes.
