@@ -1,9 +1,12 @@
 //! 6 x 6 blocks: products and a pivoted factorisation, on flat column-major arrays.
 
+use bytemuck::{Pod, Zeroable};
+
 use crate::{Matrix3, Vector6};
 
 /// A 6 x 6 block, column-major: entry (row, column) at `row + 6 column`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(transparent)]
 pub struct Block6(pub [f64; 36]);
 
 impl Block6 {

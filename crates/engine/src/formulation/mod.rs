@@ -30,7 +30,9 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use catenix_model::{FormulationKind, Line, Model};
-use catenix_numerics::{BlockMatrix, Configuration, MotionState, TangentWeights, Vector3, Vector6};
+use catenix_numerics::{
+    Block6, BlockMatrix, Configuration, MotionState, TangentWeights, Vector3, Vector6,
+};
 
 use crate::body::motion::RigidMotion;
 use crate::system::frames::Sea;
@@ -184,6 +186,22 @@ pub(crate) struct NodeResult {
     pub curvature: f64,
 }
 
+/// Sets the lines' own part of a residual and, if wanted, of a matrix to zero.
+fn clear_lines(
+    system: &System,
+    matrix_too: bool,
+    residual: &mut [Vector6],
+    matrix: &mut BlockMatrix,
+) {
+    let end = system.body_frame(0);
+    residual[..end].fill(Vector6::zeros());
+    if matrix_too {
+        matrix.diagonal[..end].fill(Block6::ZERO);
+        matrix.upper[..end].fill(Block6::ZERO);
+        matrix.lower[..end].fill(Block6::ZERO);
+    }
+}
+
 /// The lines of a system at a state, with the room that this needs.
 ///
 /// Everything but [`Self::assemble`] speaks of the state that was assembled last, which callers
@@ -192,9 +210,10 @@ pub(crate) trait Evaluation: Debug + Send {
     /// A copy.
     fn duplicate(&self) -> Box<dyn Evaluation>;
 
-    /// Adds inertia + internal forces - loads of all lines to `residual` (frame_count) [N, N m] and,
-    /// with `weights`, the derivative by the increments of the frames to `matrix`: on the line's own
-    /// frames, and between its first and last frame and the body that it ends on.
+    /// Inertia + internal forces - loads of all lines (frame_count) [N, N m] and, with `weights`, the
+    /// derivatives by the increments of the frames: written over what `residual` and `matrix` held
+    /// for the lines' own frames, and added to what they hold for bodies, and between the first and
+    /// last frame of a line and the body that it ends on.
     fn assemble(
         &mut self,
         at: &Situation<'_>,

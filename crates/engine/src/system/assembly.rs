@@ -1,8 +1,8 @@
 //! Residual and iteration matrix of the whole system.
 
-use catenix_numerics::{BlockMatrix, TangentWeights, Vector6};
+use catenix_numerics::{Block6, BlockMatrix, TangentWeights, Vector6};
 
-use super::frame_kernel::add_frames;
+use super::frame_kernel::put_frames;
 use super::frames::{self, FrameWeights};
 use super::loads;
 use crate::formulation::{Evaluation, Situation};
@@ -17,13 +17,13 @@ pub(super) fn assemble(
     matrix: &mut BlockMatrix,
 ) {
     let system = at.system;
-    residual.fill(Vector6::zeros());
+    // First the bodies, since ends of lines add to them.
     if weights.is_some() {
-        matrix.clear();
+        matrix.head.fill([Block6::ZERO; 2]);
+        matrix.tail.fill([Block6::ZERO; 2]);
     }
+    put_frames(at, &system.body_batches, weights, residual, matrix);
     lines.assemble(at, weights, residual, matrix);
-    let bodies = system.body_frame(0)..system.frames.len();
-    add_frames(at, bodies, weights, residual, matrix);
     for lump in &system.lumps {
         let k = lump.frame;
         let own = weights.map(|weights| FrameWeights::of(weights, k));

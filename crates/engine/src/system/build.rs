@@ -7,6 +7,7 @@ use catenix_model::{
 use catenix_numerics::{Chain, Topology, Vector3};
 
 use super::carry::Followers;
+use super::frame_kernel::FrameBatch;
 use super::{Frame, FrameLump, LineLayout, System, SystemError, loads, shape};
 use crate::body::lump::Lump;
 use crate::body::motion::PrescribedMotion;
@@ -81,6 +82,7 @@ pub(super) fn build(model: &Model) -> Result<System, SystemError> {
         topology: Topology::new(chains, frames.len()),
         current: CurrentField::new(&model.environment.current),
         model: model.clone(),
+        body_batches: FrameBatch::all(&frames, line_frames..frames.len()),
         frames,
         lumps,
         loads,

@@ -68,8 +68,7 @@ impl SystemSolver<'_> {
         let at = self.situation(time, state);
         let mut terms = EnergyTerms::default();
         self.lines.add_energy(&at, &mut terms);
-        let bodies = self.system.body_frame(0)..self.system.frames.len();
-        terms.add(frame_energies(&at, bodies));
+        terms.add(frame_energies(&at, &self.system.body_batches));
         for lump in &self.system.lumps {
             let motion = frames::lump_carrier(state, lump);
             terms.add(frames::lump_energy(lump, &motion, &at.sea));

@@ -5,8 +5,10 @@
 
 use std::ops::Range;
 
-use catenix_numerics::lanes::{Kernel, Lane, MOST_LANES, Mat3, Row, Vec3, vectorised};
-use catenix_numerics::{BlockMatrix, TangentWeights, Vector3, Vector6};
+use catenix_numerics::lanes::{
+    Kernel, Lane, MOST_LANES, Mat3, Row, Vec3, block, gather, lane_count, put_records, vectorised,
+};
+use catenix_numerics::{BlockMatrix, MotionState, TangentWeights, Vector3, Vector6};
 
 use super::Frame;
 use super::frames::{FrameMotion, LoadPowers, frame_motion, touch};
@@ -17,38 +19,107 @@ use crate::hydro::submergence::Submergence;
 
 const NO_ROW: Row = [0.0; MOST_LANES];
 
-/// Adds inertia minus loads of rigid frames to their residuals and, with `weights`, their derivatives
-/// to their diagonal blocks.
-pub(crate) fn add_frames(
+/// As many consecutive frames as are computed at once, and what never changes of them.
+#[derive(Debug, Clone)]
+pub(crate) struct FrameBatch {
+    /// Frames in it.
+    count: usize,
+    /// The last frame fills idle lanes.
+    frames: [usize; MOST_LANES],
+    /// Mass, weight, buoyancy, added mass across and along, added inertia (6).
+    plain: [Row; 6],
+    /// Drag coefficients (3).
+    drag: [Row; 3],
+    /// Principal moments of inertia, own axis, arm of the buoyancy (9).
+    vectors: [Row; 9],
+}
+
+impl FrameBatch {
+    /// The frames of a range in batches.
+    pub(crate) fn all(frames: &[Frame], range: Range<usize>) -> Vec<FrameBatch> {
+        let starts = range.clone().step_by(lane_count());
+        starts
+            .map(|first| FrameBatch::new(frames, first, lane_count().min(range.end - first)))
+            .collect()
+    }
+
+    fn new(frames: &[Frame], first: usize, count: usize) -> FrameBatch {
+        let mut batch = FrameBatch {
+            count,
+            frames: [0; MOST_LANES],
+            plain: [NO_ROW; 6],
+            drag: [NO_ROW; 3],
+            vectors: [NO_ROW; 9],
+        };
+        for lane in 0..MOST_LANES {
+            let k = first + lane.min(count - 1);
+            batch.frames[lane] = k;
+            let frame = &frames[k];
+            let plain = [
+                frame.mass,
+                frame.weight,
+                frame.buoyancy,
+                frame.added_normal,
+                frame.added_axial,
+                frame.added_inertia,
+            ];
+            fill(&mut batch.plain, lane, &plain);
+            let drag = [
+                frame.drag.normal,
+                frame.drag.axial,
+                frame.drag.radius_squared,
+            ];
+            fill(&mut batch.drag, lane, &drag);
+            fill(&mut batch.vectors, lane, frame.inertia.as_slice());
+            fill(&mut batch.vectors[3..], lane, frame.axis.as_slice());
+            fill(&mut batch.vectors[6..], lane, frame.buoyancy_arm.as_slice());
+        }
+        batch
+    }
+
+    #[inline(always)]
+    fn frames(&self) -> &[usize] {
+        &self.frames[..self.count]
+    }
+}
+
+/// Puts numbers into a lane.
+#[inline(always)]
+fn fill(rows: &mut [Row], lane: usize, values: &[f64]) {
+    for (row, value) in rows.iter_mut().zip(values) {
+        row[lane] = *value;
+    }
+}
+
+/// Writes inertia minus loads of rigid frames over their residuals and, with `weights`, their
+/// derivatives over their diagonal blocks.
+pub(crate) fn put_frames(
     at: &Situation<'_>,
-    range: Range<usize>,
+    batches: &[FrameBatch],
     weights: Option<&TangentWeights<'_>>,
     residual: &mut [Vector6],
     matrix: &mut BlockMatrix,
 ) {
     vectorised(Frames {
         at,
-        range,
+        batches,
         weights,
         residual,
         matrix,
     });
 }
 
-pub(super) struct Frames<'a> {
-    pub at: &'a Situation<'a>,
-    pub range: Range<usize>,
-    pub weights: Option<&'a TangentWeights<'a>>,
-    pub residual: &'a mut [Vector6],
-    pub matrix: &'a mut BlockMatrix,
+struct Frames<'a> {
+    at: &'a Situation<'a>,
+    batches: &'a [FrameBatch],
+    weights: Option<&'a TangentWeights<'a>>,
+    residual: &'a mut [Vector6],
+    matrix: &'a mut BlockMatrix,
 }
 
 /// Kinetic and potential energy of rigid frames [J], and the powers of their loads.
-pub(crate) fn frame_energies(at: &Situation<'_>, range: Range<usize>) -> (f64, f64, LoadPowers) {
-    let [twice_kinetic, drag, added_mass, buoyancy] = vectorised(Energies {
-        at,
-        range: range.clone(),
-    });
+pub(crate) fn frame_energies(at: &Situation<'_>, batches: &[FrameBatch]) -> (f64, f64, LoadPowers) {
+    let [twice_kinetic, drag, added_mass, buoyancy] = vectorised(Energies { at, batches });
     let mut potential = 0.0;
     let mut powers = LoadPowers {
         drag,
@@ -56,7 +127,7 @@ pub(crate) fn frame_energies(at: &Situation<'_>, range: Range<usize>) -> (f64, f
         buoyancy,
         seabed_damping: 0.0,
     };
-    for k in range {
+    for &k in batches.iter().flat_map(FrameBatch::frames) {
         let frame = &at.system.frames[k];
         let m = frame_motion(at.state, k);
         potential += frame.weight * m.position.z;
@@ -77,7 +148,7 @@ pub(crate) fn frame_energies(at: &Situation<'_>, range: Range<usize>) -> (f64, f
 
 struct Energies<'a> {
     at: &'a Situation<'a>,
-    range: Range<usize>,
+    batches: &'a [FrameBatch],
 }
 
 impl Kernel for Energies<'_> {
@@ -86,18 +157,14 @@ impl Kernel for Energies<'_> {
     /// Twice the kinetic energy, and the powers of drag, added mass and buoyancy.
     #[inline(always)]
     fn run<T: Lane>(self, token: T::Token) -> [f64; 4] {
-        let mut rows = NO_ROWS;
         let mut sums = [0.0; 4];
-        let mut first = self.range.start;
-        while first < self.range.end {
-            let count = (self.range.end - first).min(T::COUNT);
-            for lane in 0..T::COUNT {
-                rows.fill(lane, self.at, first + lane.min(count - 1), None);
-            }
-            let loads = Loads::<T>::new(token, &rows);
+        for batch in self.batches {
+            let surroundings = Surroundings::of::<T>(self.at, batch);
+            let pose = Pose::load(token, self.at.state, batch);
+            let loads = Loads::<T>::new(token, batch, &surroundings, &pose);
             let mut each = [NO_ROW; 4];
-            let velocity = Vec3::<T>::read(token, &rows.motion);
-            let mass: T = T::read(token, &rows.plain[0]);
+            let velocity = pose.velocity;
+            let mass: T = T::read(token, &batch.plain[0]);
             let (share, motion) = (loads.share, &loads.motion);
             let turning = loads.tensors.inertia.times(motion.spin)
                 - loads.added.inertia.times(motion.spin) * share;
@@ -113,108 +180,73 @@ impl Kernel for Energies<'_> {
             let rise = velocity.z + motion.spin.cross(loads.arm).z;
             (loads.buoyancy * share * rise).write(&mut each[3]);
             for (sum, row) in sums.iter_mut().zip(&each) {
-                for value in &row[..count] {
+                for value in &row[..batch.count] {
                     *sum += value;
                 }
             }
-            first += count;
         }
         sums
     }
 }
 
-/// Everything that frames are computed from, one row per number.
-#[derive(Clone, Copy)]
-struct Rows {
-    /// Mass, weight, buoyancy, added mass across and along, added inertia (6).
-    plain: [Row; 6],
-    /// Drag coefficients (3).
-    drag: [Row; 3],
-    /// Principal moments of inertia, own axis, arm of the buoyancy (9).
-    vectors: [Row; 9],
-    /// Rotation (9).
-    rotation: [Row; 9],
-    /// Velocity and acceleration (12).
-    motion: [Row; 12],
+/// What is found frame by frame.
+struct Surroundings {
     /// Velocity of the water and its derivative by height (6).
     water: [Row; 6],
     /// Share under water, its derivative by height, and by the slope of the axis (3).
     wet: [Row; 3],
-    /// Factor on rotation increments (9).
-    turn: [Row; 9],
+    /// Whether one of the frames passes through the surface.
+    at_surface: bool,
 }
 
-const NO_ROWS: Rows = Rows {
-    plain: [NO_ROW; 6],
-    drag: [NO_ROW; 3],
-    vectors: [NO_ROW; 9],
-    rotation: [NO_ROW; 9],
-    motion: [NO_ROW; 12],
-    water: [NO_ROW; 6],
-    wet: [NO_ROW; 3],
-    turn: [NO_ROW; 9],
-};
-
-/// Puts the numbers of one frame into its lane.
-#[inline(always)]
-fn gather(rows: &mut [Row], lane: usize, values: &[f64]) {
-    for (row, value) in rows.iter_mut().zip(values) {
-        row[lane] = *value;
+impl Surroundings {
+    #[inline(always)]
+    fn of<T: Lane>(at: &Situation<'_>, batch: &FrameBatch) -> Surroundings {
+        let mut own = Surroundings {
+            water: [NO_ROW; 6],
+            wet: [NO_ROW; 3],
+            at_surface: false,
+        };
+        for (lane, &k) in batch.frames[..T::COUNT].iter().enumerate() {
+            let frame = &at.system.frames[k];
+            let rotation = &at.state.configuration.rotation[k];
+            let height = at.state.configuration.position[k].z;
+            let (water, slope) = at.sea.current.at(height, at.sea.current_factor);
+            fill(&mut own.water, lane, water.as_slice());
+            fill(&mut own.water[3..], lane, slope.as_slice());
+            let rise = [0, 1, 2].map(|d| rotation[(2, d)] * frame.axis[d]);
+            let rise = rise[0] + rise[1] + rise[2];
+            let wet = Submergence::new(height, rise, frame.length, frame.diameter);
+            let wet_row = [wet.share, wet.by_height, wet.by_slope];
+            fill(&mut own.wet, lane, &wet_row);
+            own.at_surface |= wet.by_height != 0.0;
+        }
+        own
     }
 }
 
-impl Rows {
-    /// Fills a lane; whether the frame passes through the surface.
+/// Rotations and motions of the frames of a batch.
+struct Pose<T> {
+    rotation: Mat3<T>,
+    velocity: Vec3<T>,
+    motion: BodyMotion<T>,
+}
+
+impl<T: Lane> Pose<T> {
     #[inline(always)]
-    fn fill(
-        &mut self,
-        lane: usize,
-        at: &Situation<'_>,
-        k: usize,
-        weights: Option<&TangentWeights<'_>>,
-    ) -> bool {
-        let frame: &Frame = &at.system.frames[k];
-        let rotation = &at.state.configuration.rotation[k];
-        let height = at.state.configuration.position[k].z;
-        let plain = [
-            frame.mass,
-            frame.weight,
-            frame.buoyancy,
-            frame.added_normal,
-            frame.added_axial,
-            frame.added_inertia,
-        ];
-        gather(&mut self.plain, lane, &plain);
-        let drag = [
-            frame.drag.normal,
-            frame.drag.axial,
-            frame.drag.radius_squared,
-        ];
-        gather(&mut self.drag, lane, &drag);
-        gather(&mut self.vectors, lane, frame.inertia.as_slice());
-        gather(&mut self.vectors[3..], lane, frame.axis.as_slice());
-        gather(&mut self.vectors[6..], lane, frame.buoyancy_arm.as_slice());
-        gather(&mut self.rotation, lane, rotation.as_slice());
-        gather(&mut self.motion, lane, at.state.velocity[k].as_slice());
-        gather(
-            &mut self.motion[6..],
-            lane,
-            at.state.acceleration[k].as_slice(),
-        );
-        let (water, slope) = at.sea.current.at(height, at.sea.current_factor);
-        gather(&mut self.water, lane, water.as_slice());
-        gather(&mut self.water[3..], lane, slope.as_slice());
-        let [x, y, z] = [0, 1, 2].map(|d| rotation[(2, d)] * frame.axis[d]);
-        let wet = Submergence::new(height, x + y + z, frame.length, frame.diameter);
-        gather(
-            &mut self.wet,
-            lane,
-            &[wet.share, wet.by_height, wet.by_slope],
-        );
-        if let Some(weights) = weights {
-            gather(&mut self.turn, lane, weights.turn(k).as_slice());
+    fn load(token: T::Token, state: &MotionState, batch: &FrameBatch) -> Pose<T> {
+        let frames = &batch.frames;
+        let [u, v, w, p, q, r] = gather(token, &state.velocity, frames);
+        let [a, b, c, d, e, f] = gather(token, &state.acceleration, frames);
+        Pose {
+            rotation: Mat3::gather(token, &state.configuration.rotation, frames),
+            velocity: Vec3::new(u, v, w),
+            motion: BodyMotion {
+                spin: Vec3::new(p, q, r),
+                acceleration: Vec3::new(a, b, c),
+                angular_acceleration: Vec3::new(d, e, f),
+            },
         }
-        wet.by_height != 0.0
     }
 }
 
@@ -225,60 +257,37 @@ impl Kernel for Frames<'_> {
     fn run<T: Lane>(self, token: T::Token) {
         let Frames {
             at,
-            range,
+            batches,
             weights,
             residual,
             matrix,
         } = self;
-        let mut rows = NO_ROWS;
-        let mut blocks = [NO_ROW; 36];
-        let mut first = range.start;
-        while first < range.end {
-            let count = (range.end - first).min(T::COUNT);
-            let mut at_surface = false;
-            for lane in 0..T::COUNT {
-                // The last frame fills idle lanes.
-                let k = first + lane.min(count - 1);
-                at_surface |= rows.fill(lane, at, k, weights);
-            }
-            let loads = Loads::<T>::new(token, &rows);
-            let [force, moment] = loads.total();
-            let mut sums = [NO_ROW; 6];
-            force.write(&mut sums);
-            moment.write(&mut sums[3..]);
-            for lane in 0..count {
-                for (sum, row) in residual[first + lane].iter_mut().zip(&sums) {
-                    *sum += row[lane];
-                }
-            }
+        for batch in batches {
+            let surroundings = Surroundings::of::<T>(at, batch);
+            let pose = Pose::load(token, at.state, batch);
+            let loads = Loads::<T>::new(token, batch, &surroundings, &pose);
+            let [f, m] = loads.total();
+            let sums = [f.x, f.y, f.z, m.x, m.y, m.z];
+            put_records(&sums, residual, batch.frames());
             if let Some(weights) = weights {
-                let turn = Mat3::read(token, &rows.turn);
+                let turn = match weights.rotation {
+                    None => Mat3::diagonal(T::splat(token, 1.0)),
+                    Some(rotation) => Mat3::gather(token, rotation, &batch.frames),
+                };
                 let velocity = T::splat(token, weights.velocity);
                 let acceleration = T::splat(token, weights.acceleration);
                 let mut tangent = loads.tangent(velocity, acceleration, turn);
-                if at_surface {
+                if surroundings.at_surface {
                     loads.add_waterline(&mut tangent);
                 }
                 let [[a, b], [c, d]] = &tangent;
-                for column in 0..3 {
-                    a.0[column].write(&mut blocks[6 * column..]);
-                    c.0[column].write(&mut blocks[6 * column + 3..]);
-                    b.0[column].write(&mut blocks[6 * column + 18..]);
-                    d.0[column].write(&mut blocks[6 * column + 21..]);
-                }
-                for lane in 0..count {
-                    let block = &mut matrix.diagonal[first + lane].0;
-                    for (entry, row) in block.iter_mut().zip(&blocks) {
-                        *entry += row[lane];
-                    }
-                }
+                put_records(&block([a, b, c, d]), &mut matrix.diagonal, batch.frames());
             }
             if at.sea.seabed.is_some() {
-                for k in first..first + count {
+                for &k in batch.frames() {
                     add_contact(at, k, weights, residual, matrix);
                 }
             }
-            first += count;
         }
     }
 }
@@ -329,12 +338,18 @@ struct Loads<T> {
 
 impl<T: Lane> Loads<T> {
     #[inline(always)]
-    fn new(token: T::Token, rows: &Rows) -> Self {
-        let rotation = Mat3::<T>::read(token, &rows.rotation);
+    fn new(
+        token: T::Token,
+        rows: &FrameBatch,
+        surroundings: &Surroundings,
+        pose: &Pose<T>,
+    ) -> Self {
+        let Surroundings { water, wet, .. } = surroundings;
+        let rotation = pose.rotation;
         let axis = rotation.times(Vec3::read(token, &rows.vectors[3..]));
-        let share = T::read(token, &rows.wet[0]);
-        let spin = Vec3::read(token, &rows.motion[3..]);
-        let relative = Vec3::read(token, &rows.water) - Vec3::read(token, &rows.motion);
+        let share = T::read(token, &wet[0]);
+        let spin = pose.motion.spin;
+        let relative = Vec3::read(token, water) - pose.velocity;
         let coefficients = [
             T::read(token, &rows.drag[0]),
             T::read(token, &rows.drag[1]),
@@ -366,17 +381,13 @@ impl<T: Lane> Loads<T> {
                 inertia: structure.plus(share, added.inertia),
             },
             added,
-            motion: BodyMotion {
-                spin,
-                acceleration: Vec3::read(token, &rows.motion[6..]),
-                angular_acceleration: Vec3::read(token, &rows.motion[9..]),
-            },
-            current_slope: Vec3::read(token, &rows.water[3..]),
+            motion: pose.motion,
+            current_slope: Vec3::read(token, &water[3..]),
             weight: T::read(token, &rows.plain[1]),
             buoyancy: T::read(token, &rows.plain[2]),
             arm: rotation.times(Vec3::read(token, &rows.vectors[6..])),
-            by_height: T::read(token, &rows.wet[1]),
-            by_slope: T::read(token, &rows.wet[2]),
+            by_height: T::read(token, &wet[1]),
+            by_slope: T::read(token, &wet[2]),
         }
     }
 
@@ -469,16 +480,27 @@ mod tests {
             let zero = BlockMatrix::zeros(&at.system.topology);
             let mut matrices = [zero.clone(), zero];
             for (lanes, (residual, matrix)) in residuals.iter_mut().zip(&mut matrices).enumerate() {
-                let frames = Frames {
-                    at,
-                    range: 0..n,
-                    weights: Some(weights),
-                    residual,
-                    matrix,
-                };
                 match lanes {
-                    0 => frames.run::<f64>(()),
-                    _ => vectorised(frames),
+                    0 => {
+                        for k in 0..n {
+                            let batches = [FrameBatch::new(&at.system.frames, k, 1)];
+                            let one = Frames {
+                                at,
+                                batches: &batches,
+                                weights: Some(weights),
+                                residual: &mut *residual,
+                                matrix: &mut *matrix,
+                            };
+                            one.run::<f64>(());
+                        }
+                    }
+                    _ => vectorised(Frames {
+                        at,
+                        batches: &FrameBatch::all(&at.system.frames, 0..n),
+                        weights: Some(weights),
+                        residual,
+                        matrix,
+                    }),
                 }
             }
             // A few roundings, of the largest entries of each block.

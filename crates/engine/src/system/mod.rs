@@ -64,6 +64,8 @@ const WORRYING_ROUND_OFF: f64 = 1e-5;
 pub struct System {
     pub(crate) model: Model,
     pub(crate) frames: Vec<Frame>,
+    /// The bodies, several at a time.
+    pub(crate) body_batches: Vec<frame_kernel::FrameBatch>,
     pub(crate) lumps: Vec<FrameLump>,
     pub(crate) loads: Vec<loads::FrameLoad>,
     pub(crate) lines: Vec<LineLayout>,

@@ -71,10 +71,9 @@ fn angle_over_sine_of(cos: f64) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::pack::OnPacks;
+    use super::super::pack::on_every_instruction_set;
     use super::super::{Kernel, Row};
     use super::*;
-    use crate::dispatch::on_every_instruction_set;
 
     struct Both {
         x: Row,
@@ -107,7 +106,7 @@ mod tests {
             [1.0, -2.0, 0.3, -0.0, -0.5, 0.0, -1.0, 1e-3],
         ];
         for (x, y) in cosines.into_iter().zip(heights) {
-            for (count, rows) in on_every_instruction_set(|| OnPacks(Both { x, y })) {
+            for (count, rows) in on_every_instruction_set(|| Both { x, y }) {
                 for k in 0..count {
                     // Two roundings of numbers of size 3.
                     assert!((rows[0][k] - y[k].atan2(x[k])).abs() < 1e-15 * 3.0);

@@ -11,6 +11,8 @@
 
 mod functions;
 mod pack;
+mod records;
+mod registers;
 mod vectors;
 
 use std::fmt::Debug;
@@ -18,7 +20,8 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 pub use functions::{angle_over_sine, atan2};
 pub use pack::{lane_count, vectorised};
-pub use vectors::{Mat3, Vec3};
+pub use records::{Record, add_records, gather, put_records};
+pub use vectors::{Mat3, Vec3, block};
 
 /// Most elements that are computed at once.
 pub const MOST_LANES: usize = 8;
@@ -59,6 +62,15 @@ pub trait Lane:
 
     /// Writes the first [`Self::COUNT`] numbers.
     fn write(self, row: &mut Row);
+
+    /// Reads the first [`Self::COUNT`] of at least so many numbers.
+    fn read_some(token: Self::Token, numbers: &[f64]) -> Self;
+
+    /// Writes the first [`Self::COUNT`] of at least so many numbers.
+    fn write_some(self, numbers: &mut [f64]);
+
+    /// Exchanges rows and columns of the square of the first [`Self::COUNT`] rows.
+    fn transposed(square: [Self; MOST_LANES]) -> [Self; MOST_LANES];
 
     /// self x factor + addend
     fn mul_add(self, factor: Self, addend: Self) -> Self;
@@ -132,6 +144,21 @@ impl Lane for f64 {
     #[inline(always)]
     fn write(self, row: &mut Row) {
         row[0] = self;
+    }
+
+    #[inline(always)]
+    fn read_some((): (), numbers: &[f64]) -> f64 {
+        numbers[0]
+    }
+
+    #[inline(always)]
+    fn write_some(self, numbers: &mut [f64]) {
+        numbers[0] = self;
+    }
+
+    #[inline(always)]
+    fn transposed(square: [f64; MOST_LANES]) -> [f64; MOST_LANES] {
+        square
     }
 
     #[inline(always)]

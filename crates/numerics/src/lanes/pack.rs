@@ -2,20 +2,29 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Arch, NullaryFnOnce};
 
+use super::registers::Registers;
 use super::{Kernel, Lane, MOST_LANES, Row};
 
 /// A vector register of the instruction set `S`.
 #[derive(Debug, Clone, Copy)]
-pub struct Pack<S: Simd> {
+pub struct Pack<S: Registers> {
     s: S,
     v: S::f64s,
 }
 
 /// Computes a kernel with the best instructions of this processor.
 pub fn vectorised<K: Kernel>(kernel: K) -> K::Output {
-    Arch::new().dispatch(OnPacks(kernel))
+    match Arch::new() {
+        #[cfg(target_arch = "x86_64")]
+        Arch::V4(s) => s.vectorize(On { kernel, s }),
+        #[cfg(target_arch = "x86_64")]
+        Arch::V3(s) => s.vectorize(On { kernel, s }),
+        #[cfg(target_arch = "aarch64")]
+        Arch::Neon(s) => s.vectorize(On { kernel, s }),
+        _ => kernel.run::<Pack<pulp::Scalar>>(pulp::Scalar::new()),
+    }
 }
 
 /// Elements that [`vectorised`] computes at once on this processor.
@@ -32,19 +41,42 @@ pub fn lane_count() -> usize {
     vectorised(Count)
 }
 
-/// Chooses the register.
-pub(super) struct OnPacks<K>(pub(super) K);
+/// A kernel on registers of one kind.
+struct On<K, S> {
+    kernel: K,
+    s: S,
+}
 
-impl<K: Kernel> WithSimd for OnPacks<K> {
+impl<K: Kernel, S: Registers> NullaryFnOnce for On<K, S> {
     type Output = K::Output;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, s: S) -> K::Output {
-        self.0.run::<Pack<S>>(s)
+    fn call(self) -> K::Output {
+        self.kernel.run::<Pack<S>>(self.s)
     }
 }
 
-impl<S: Simd> Pack<S> {
+/// Computes a kernel with everything that this processor has: plain numbers too.
+#[cfg(test)]
+pub(super) fn on_every_instruction_set<K: Kernel>(kernel: impl Fn() -> K) -> Vec<K::Output> {
+    let s = pulp::Scalar::new();
+    let mut outputs = vec![
+        kernel().run::<f64>(()),
+        kernel().run::<Pack<pulp::Scalar>>(s),
+    ];
+    #[cfg(target_arch = "x86_64")]
+    {
+        let run = |s: pulp::x86::V3| {
+            let kernel = kernel();
+            s.vectorize(On { kernel, s })
+        };
+        outputs.extend(pulp::x86::V3::try_new().map(run));
+    }
+    outputs.push(vectorised(kernel()));
+    outputs
+}
+
+impl<S: Registers> Pack<S> {
     #[inline(always)]
     fn new(s: S, v: S::f64s) -> Self {
         Pack { s, v }
@@ -58,7 +90,7 @@ impl<S: Simd> Pack<S> {
     }
 }
 
-impl<S: Simd> Lane for Pack<S> {
+impl<S: Registers> Lane for Pack<S> {
     type Token = S;
     type Mask = S::m64s;
     const COUNT: usize = S::F64_LANES;
@@ -81,6 +113,33 @@ impl<S: Simd> Lane for Pack<S> {
     #[inline(always)]
     fn write(self, row: &mut Row) {
         S::as_mut_simd_f64s(row).0[0] = self.v;
+    }
+
+    #[inline(always)]
+    fn read_some(s: S, numbers: &[f64]) -> Self {
+        Pack::new(s, S::as_simd_f64s(&numbers[..Self::COUNT]).0[0])
+    }
+
+    #[inline(always)]
+    fn write_some(self, numbers: &mut [f64]) {
+        S::as_mut_simd_f64s(&mut numbers[..Self::COUNT]).0[0] = self.v;
+    }
+
+    #[inline(always)]
+    fn transposed(square: [Self; MOST_LANES]) -> [Self; MOST_LANES] {
+        let s = square[0].s;
+        let [a, b, c, d, e, f, g, h] = square;
+        let [a, b, c, d, e, f, g, h] = s.transposed([a.v, b.v, c.v, d.v, e.v, f.v, g.v, h.v]);
+        [
+            Pack::new(s, a),
+            Pack::new(s, b),
+            Pack::new(s, c),
+            Pack::new(s, d),
+            Pack::new(s, e),
+            Pack::new(s, f),
+            Pack::new(s, g),
+            Pack::new(s, h),
+        ]
     }
 
     #[inline(always)]
@@ -139,7 +198,7 @@ impl<S: Simd> Lane for Pack<S> {
 
 macro_rules! operator {
     ($trait:ident, $function:ident, $simd:ident) => {
-        impl<S: Simd> $trait for Pack<S> {
+        impl<S: Registers> $trait for Pack<S> {
             type Output = Self;
 
             #[inline(always)]
@@ -157,7 +216,7 @@ operator!(Div, div, div_f64s);
 
 macro_rules! operator_with_number {
     ($trait:ident, $function:ident) => {
-        impl<S: Simd> $trait<f64> for Pack<S> {
+        impl<S: Registers> $trait<f64> for Pack<S> {
             type Output = Self;
 
             #[inline(always)]
@@ -172,7 +231,7 @@ operator_with_number!(Add, add);
 operator_with_number!(Sub, sub);
 operator_with_number!(Mul, mul);
 
-impl<S: Simd> Neg for Pack<S> {
+impl<S: Registers> Neg for Pack<S> {
     type Output = Self;
 
     #[inline(always)]
@@ -181,14 +240,14 @@ impl<S: Simd> Neg for Pack<S> {
     }
 }
 
-impl<S: Simd> AddAssign for Pack<S> {
+impl<S: Registers> AddAssign for Pack<S> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl<S: Simd> SubAssign for Pack<S> {
+impl<S: Registers> SubAssign for Pack<S> {
     #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;

@@ -5,7 +5,7 @@
 
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
-use super::{Lane, Row};
+use super::{Lane, MOST_LANES, Row, gather};
 use crate::{Matrix3, Vector3};
 
 /// Three components.
@@ -141,6 +141,13 @@ impl<T: Lane> Mat3<T> {
             Vec3::read(token, &rows[3..]),
             Vec3::read(token, &rows[6..]),
         ])
+    }
+
+    /// One matrix per lane.
+    #[inline(always)]
+    pub fn gather(token: T::Token, matrices: &[Matrix3], index: &[usize; MOST_LANES]) -> Self {
+        let [a, b, c, d, e, f, g, h, i] = gather(token, matrices, index);
+        Mat3([Vec3::new(a, b, c), Vec3::new(d, e, f), Vec3::new(g, h, i)])
     }
 
     /// self x
@@ -346,4 +353,16 @@ impl From<Mat3<f64>> for Matrix3 {
     fn from(m: Mat3<f64>) -> Self {
         Matrix3::from_columns(&m.0.map(Vector3::from))
     }
+}
+
+/// Four quadrants, by rows, as the 36 entries of a block.
+#[inline(always)]
+pub fn block<T: Lane>([a, b, c, d]: [&Mat3<T>; 4]) -> [T; 36] {
+    let ([a, p, q], [b, r, s]) = (a.0, b.0);
+    let ([c, t, u], [d, v, w]) = (c.0, d.0);
+    [
+        a.x, a.y, a.z, c.x, c.y, c.z, p.x, p.y, p.z, t.x, t.y, t.z, //
+        q.x, q.y, q.z, u.x, u.y, u.z, b.x, b.y, b.z, d.x, d.y, d.z, //
+        r.x, r.y, r.z, v.x, v.y, v.z, s.x, s.y, s.z, w.x, w.y, w.z,
+    ]
 }

@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
-use catenix_numerics::{BlockMatrix, Matrix3, TangentWeights, Vector3, Vector6};
+use catenix_numerics::{Block6, BlockMatrix, Matrix3, TangentWeights, Vector3, Vector6};
 
 use super::super::{Evaluation, NodeResult, Situation};
 use super::element::connector::Prediction;
 use super::element::pair::RateWeights;
 use super::links::Links;
 use super::pairs::{EvaluatedPair, scatter};
-use super::{ConnectorLaw, Dem, element_end, nodes};
-use crate::system::frame_kernel::{add_frames, frame_energies};
+use super::{ConnectorLaw, Dem, Place, element_end, nodes};
+use crate::system::frame_kernel::{frame_energies, put_frames};
 use crate::system::frames::{self, frame_motion};
 use crate::system::{Carrier, EnergyTerms, Momentum, Mount, System};
 
@@ -69,8 +69,7 @@ impl Evaluation for DemEvaluation {
         residual: &mut [Vector6],
         matrix: &mut BlockMatrix,
     ) {
-        let elements = 0..at.system.body_frame(0);
-        add_frames(at, elements, weights, residual, matrix);
+        put_frames(at, &self.dem.elements, weights, residual, matrix);
         self.links.assemble(at, weights, residual, matrix);
         for other in &mut self.others {
             let connector = &self.dem.connectors[other.index];
@@ -85,6 +84,10 @@ impl Evaluation for DemEvaluation {
                 }
             }
             if let Some(weights) = weights {
+                if let Place::Link(k) = connector.place {
+                    matrix.upper[k] = Block6::ZERO;
+                    matrix.lower[k] = Block6::ZERO;
+                }
                 let side_turn = |mount: &Mount| match mount.carrier {
                     Carrier::Free(k) => weights.turn(k),
                     Carrier::Vessel(_) => Matrix3::identity(),
@@ -124,7 +127,7 @@ impl Evaluation for DemEvaluation {
     }
 
     fn add_energy(&self, at: &Situation<'_>, terms: &mut EnergyTerms) {
-        terms.add(frame_energies(at, 0..at.system.body_frame(0)));
+        terms.add(frame_energies(at, &self.dem.elements));
         let [elastic, damping] = self.links.energy();
         terms.elastic += elastic;
         terms.structural_damping += damping;

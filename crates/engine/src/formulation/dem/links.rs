@@ -1,7 +1,10 @@
 //! The connectors between the elements of a line, several at a time: those between straight round
 //! linear sections, which are nearly all. The others go one by one ([`super::pairs`]).
 
-use catenix_numerics::lanes::{Kernel, Lane, MOST_LANES, Mat3, Row, Vec3, lane_count, vectorised};
+use catenix_numerics::lanes::{
+    Kernel, Lane, MOST_LANES, Mat3, Row, Vec3, add_records, block, gather, lane_count, put_records,
+    vectorised,
+};
 use catenix_numerics::{BlockMatrix, MotionState, TangentWeights, Vector3, Vector6};
 
 use super::super::Situation;
@@ -16,8 +19,8 @@ const NO_ROW: Row = [0.0; MOST_LANES];
 struct Batch {
     /// Links in it.
     count: usize,
-    /// First frame of each link; the second one follows it. The last link fills idle lanes.
-    frame: [usize; MOST_LANES],
+    /// Both frames of each link. The last link fills idle lanes.
+    frames: [[usize; MOST_LANES]; 2],
     /// Axial, shear, torsional and bending stiffness, and damping time (5).
     law: [Row; 5],
     /// Place of the connection point on the axes of the two frames (2) [m].
@@ -129,7 +132,7 @@ impl Batch {
     fn new(links: &[(usize, [f64; 7])]) -> Batch {
         let mut batch = Batch {
             count: links.len(),
-            frame: [0; MOST_LANES],
+            frames: [[0; MOST_LANES]; 2],
             law: [NO_ROW; 5],
             levers: [NO_ROW; 2],
             damped: links.iter().any(|(_, law)| law[4] > 0.0),
@@ -139,13 +142,20 @@ impl Batch {
         };
         for lane in 0..MOST_LANES {
             let (frame, law) = &links[lane.min(links.len() - 1)];
-            batch.frame[lane] = *frame;
+            batch.frames[0][lane] = *frame;
+            batch.frames[1][lane] = *frame + 1;
             let rows = batch.law.iter_mut().chain(&mut batch.levers);
             for (row, value) in rows.zip(law) {
                 row[lane] = *value;
             }
         }
         batch
+    }
+
+    /// Both frames of the links that are there.
+    #[inline(always)]
+    fn frames(&self) -> [&[usize]; 2] {
+        [&self.frames[0][..self.count], &self.frames[1][..self.count]]
     }
 
     #[inline(always)]
@@ -174,11 +184,48 @@ fn at<T: Lane>(token: T::Token, rows: &[Row], first: usize) -> Vec3<T> {
     Vec3::read(token, &rows[first..])
 }
 
-/// Puts the numbers of one element into its lane.
+/// Three numbers from `start` on.
 #[inline(always)]
-fn gather(rows: &mut [Row], lane: usize, values: &[f64]) {
-    for (row, value) in rows.iter_mut().zip(values) {
-        row[lane] = *value;
+fn three<T: Lane>(numbers: &[T; 6], start: usize) -> Vec3<T> {
+    Vec3::new(numbers[start], numbers[start + 1], numbers[start + 2])
+}
+
+/// What a connector feels of one of its frames.
+struct Side<T> {
+    position: Vec3<T>,
+    axis: Vec3<T>,
+    /// Second axis, which tells the twist.
+    direction: Vec3<T>,
+    velocity: Vec3<T>,
+    spin: Vec3<T>,
+}
+
+impl<T: Lane> Side<T> {
+    #[inline(always)]
+    fn load(token: T::Token, state: &MotionState, frames: &[usize; MOST_LANES]) -> Side<T> {
+        let [x, y, z] = gather(token, &state.configuration.position, frames);
+        let [a, b, c, d, e, f] = gather(token, &state.configuration.rotation, frames);
+        let [u, v, w, p, q, r] = gather(token, &state.velocity, frames);
+        Side {
+            position: Vec3::new(x, y, z),
+            axis: Vec3::new(a, b, c),
+            direction: Vec3::new(d, e, f),
+            velocity: Vec3::new(u, v, w),
+            spin: Vec3::new(p, q, r),
+        }
+    }
+}
+
+/// The factors on the rotations of frames.
+#[inline(always)]
+fn turns<T: Lane>(
+    token: T::Token,
+    weights: &TangentWeights<'_>,
+    frames: &[usize; MOST_LANES],
+) -> Mat3<T> {
+    match weights.rotation {
+        None => Mat3::diagonal(T::splat(token, 1.0)),
+        Some(rotation) => Mat3::gather(token, rotation, frames),
     }
 }
 
@@ -197,32 +244,22 @@ impl Kernel for Assembly<'_> {
     fn run<T: Lane>(self, token: T::Token) {
         let predicts = self.links.predicts;
         for batch in &mut self.links.batches {
-            // Position (3), first two columns of the rotation (6), velocity (6), of both frames.
-            let mut rows = [[NO_ROW; 15]; 2];
-            let configuration = &self.state.configuration;
-            for lane in 0..T::COUNT {
-                for (side, rows) in rows.iter_mut().enumerate() {
-                    let k = batch.frame[lane] + side;
-                    let (place, motion) = rows.split_at_mut(9);
-                    gather(place, lane, configuration.position[k].as_slice());
-                    gather(&mut place[3..], lane, configuration.rotation[k].as_slice());
-                    gather(motion, lane, self.state.velocity[k].as_slice());
-                }
-            }
-            let [first, second] = &rows;
+            let [first, second] = [
+                Side::load(token, self.state, &batch.frames[0]),
+                Side::load(token, self.state, &batch.frames[1]),
+            ];
             let (law, levers) = (batch.law::<T>(token), batch.levers::<T>(token));
-            let axes = [at::<T>(token, first, 3), at::<T>(token, second, 3)];
+            let axes = [first.axis, second.axis];
             let arms = [axes[0] * levers[0], axes[1] * levers[1]];
-            let gap = at::<T>(token, second, 0) - at::<T>(token, first, 0) + arms[1] - arms[0];
+            let gap = second.position - first.position + arms[1] - arms[0];
             let pair = PairGeometry::new(axes, gap);
-            let twist = pair.twist([at::<T>(token, first, 6), at::<T>(token, second, 6)]);
+            let twist = pair.twist([first.direction, second.direction]);
             let extension = pair.extension();
             let stretch = (law.axial - law.shear) * extension;
             let elastic = (gap * law.shear).plus(stretch, pair.mean);
             let moment = pair.round_moment(&law, twist);
-            let spins = [at::<T>(token, first, 12), at::<T>(token, second, 12)];
-            let gap_velocity = at::<T>(token, second, 9) - at::<T>(token, first, 9)
-                + spins[1].cross(arms[1])
+            let spins = [first.spin, second.spin];
+            let gap_velocity = second.velocity - first.velocity + spins[1].cross(arms[1])
                 - spins[0].cross(arms[0]);
             let rates = pair.rates(spins, gap_velocity);
             let zero = Vec3::zeros(token);
@@ -239,18 +276,12 @@ impl Kernel for Assembly<'_> {
                 damping_force,
                 pair.turning(stretch),
             );
-            let mut forces = [NO_ROW; 9];
-            force.write(&mut forces);
-            first_moment.write(&mut forces[3..]);
-            second_moment.write(&mut forces[6..]);
-            for (lane, &k) in batch.frame[..batch.count].iter().enumerate() {
-                for d in 0..3 {
-                    self.residual[k][d] -= forces[d][lane];
-                    self.residual[k][d + 3] += forces[d + 3][lane];
-                    self.residual[k + 1][d] += forces[d][lane];
-                    self.residual[k + 1][d + 3] += forces[d + 6][lane];
-                }
-            }
+            let frames = batch.frames();
+            let (f, m, n) = (force, first_moment, second_moment);
+            let on_first = [-f.x, -f.y, -f.z, m.x, m.y, m.z];
+            add_records(&on_first, self.residual, frames[0]);
+            let on_second = [f.x, f.y, f.z, n.x, n.y, n.z];
+            add_records(&on_second, self.residual, frames[1]);
             axes[0].write(&mut batch.geometry);
             axes[1].write(&mut batch.geometry[3..]);
             gap.write(&mut batch.geometry[6..]);
@@ -273,16 +304,12 @@ impl Kernel for Assembly<'_> {
             let moment_by = pair.round_moment_by_rotations(&law, twist);
             let mut tangents = pair.elastic_tangent(&law, geometric, levers, &moment_by);
             if batch.damped && weights.velocity > 0.0 {
-                let mut rows = [[NO_ROW; 9]; 2];
-                for lane in 0..T::COUNT {
-                    for (side, rows) in rows.iter_mut().enumerate() {
-                        let turn = weights.turn(batch.frame[lane] + side);
-                        gather(rows, lane, turn.as_slice());
-                    }
-                }
                 let own = PairWeights {
                     velocity: T::splat(token, weights.velocity),
-                    rotation: [Mat3::read(token, &rows[0]), Mat3::read(token, &rows[1])],
+                    rotation: [
+                        turns(token, weights, &batch.frames[0]),
+                        turns(token, weights, &batch.frames[1]),
+                    ],
                 };
                 let by = pair.round_damping_by(&law, &rates);
                 pair.add_damping_tangent(
@@ -300,85 +327,21 @@ impl Kernel for Assembly<'_> {
     }
 }
 
-/// Adds the blocks of the links where they belong.
+/// Adds the blocks on the diagonal, and writes those beside it, which no other connector has.
 #[inline(always)]
 fn scatter<T: Lane>(batch: &Batch, t: &PairTangents<T>, matrix: &mut BlockMatrix) {
-    let mut rows = [NO_ROW; 36];
+    let frames = batch.frames();
     let [first, second] = &t.moment;
-    let f = &t.force;
-    write_block(
-        &mut rows,
-        [
-            &f.translation,
-            &-f.rotation[0],
-            &-first.translation,
-            &first.rotation[0],
-        ],
-    );
-    for lane in 0..batch.count {
-        add(&mut matrix.diagonal[batch.frame[lane]].0, &rows, lane);
-    }
-    write_block(
-        &mut rows,
-        [
-            &f.translation,
-            &f.rotation[1],
-            &second.translation,
-            &second.rotation[1],
-        ],
-    );
-    for lane in 0..batch.count {
-        add(&mut matrix.diagonal[batch.frame[lane] + 1].0, &rows, lane);
-    }
-    write_block(
-        &mut rows,
-        [
-            &-f.translation,
-            &-f.rotation[1],
-            &first.translation,
-            &first.rotation[1],
-        ],
-    );
-    for lane in 0..batch.count {
-        put(&mut matrix.upper[batch.frame[lane]].0, &rows, lane);
-    }
-    write_block(
-        &mut rows,
-        [
-            &-f.translation,
-            &f.rotation[0],
-            &-second.translation,
-            &second.rotation[0],
-        ],
-    );
-    for lane in 0..batch.count {
-        put(&mut matrix.lower[batch.frame[lane]].0, &rows, lane);
-    }
-}
-
-/// Four quadrants, by rows, as the 36 entries of a block.
-#[inline(always)]
-fn write_block<T: Lane>(rows: &mut [Row; 36], quadrants: [&Mat3<T>; 4]) {
-    for column in 0..3 {
-        quadrants[0].0[column].write(&mut rows[6 * column..]);
-        quadrants[2].0[column].write(&mut rows[6 * column + 3..]);
-        quadrants[1].0[column].write(&mut rows[6 * column + 18..]);
-        quadrants[3].0[column].write(&mut rows[6 * column + 21..]);
-    }
-}
-
-#[inline(always)]
-fn add(block: &mut [f64; 36], rows: &[Row; 36], lane: usize) {
-    for (entry, row) in block.iter_mut().zip(rows) {
-        *entry += row[lane];
-    }
-}
-
-#[inline(always)]
-fn put(block: &mut [f64; 36], rows: &[Row; 36], lane: usize) {
-    for (entry, row) in block.iter_mut().zip(rows) {
-        *entry = row[lane];
-    }
+    let (f, [f_first, f_second]) = (&t.force.translation, &t.force.rotation);
+    let values = block([f, &-*f_first, &-first.translation, &first.rotation[0]]);
+    add_records(&values, &mut matrix.diagonal, frames[0]);
+    let values = block([f, f_second, &second.translation, &second.rotation[1]]);
+    add_records(&values, &mut matrix.diagonal, frames[1]);
+    let minus = -*f;
+    let values = block([&minus, &-*f_second, &first.translation, &first.rotation[1]]);
+    put_records(&values, &mut matrix.upper, frames[0]);
+    let values = block([&minus, f_first, &-second.translation, &second.rotation[0]]);
+    put_records(&values, &mut matrix.lower, frames[0]);
 }
 
 struct Moving<'a> {
@@ -393,16 +356,10 @@ impl Kernel for Moving<'_> {
     fn run<T: Lane>(self, token: T::Token) {
         self.links.predicts = true;
         for batch in &mut self.links.batches {
-            let mut rows = [[NO_ROW; 6]; 2];
-            for lane in 0..T::COUNT {
-                for (side, rows) in rows.iter_mut().enumerate() {
-                    gather(
-                        rows,
-                        lane,
-                        self.increment[batch.frame[lane] + side].as_slice(),
-                    );
-                }
-            }
+            let [first, second]: [[T; 6]; 2] = [
+                gather(token, self.increment, &batch.frames[0]),
+                gather(token, self.increment, &batch.frames[1]),
+            ];
             let kept = &batch.geometry;
             let inverse = T::read(token, &batch.geometry[12]);
             let pair = PairGeometry {
@@ -415,11 +372,10 @@ impl Kernel for Moving<'_> {
             };
             let levers = batch.levers::<T>(token);
             let [a, b] = pair.axes;
-            let [first, second] = &rows;
             let (extension, across) = pair.predicted(
                 [a * levers[0], b * levers[1]],
-                at::<T>(token, second, 0) - at::<T>(token, first, 0),
-                [at::<T>(token, first, 3), at::<T>(token, second, 3)],
+                three(&second, 0) - three(&first, 0),
+                [three(&first, 3), three(&second, 3)],
             );
             extension.write(&mut batch.predicted[0]);
             across.write(&mut batch.predicted[1..]);

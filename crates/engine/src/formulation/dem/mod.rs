@@ -18,6 +18,7 @@ use catenix_numerics::{Configuration, Matrix3, Vector3};
 
 use super::{Evaluation, Family, Formulation, Lines, Plan, Situation, Spot};
 use crate::hydro::morison::DragCoefficients;
+use crate::system::frame_kernel::FrameBatch;
 use crate::system::{Carrier, Frame, FrameOwner, LineLayout, Mount, SystemError};
 use element::joint::JointStiffness;
 use element::stiffness::{ConnectorStiffness, HalfElement, rotary_share};
@@ -94,6 +95,8 @@ struct Dem {
     /// Connector at each node of each line, end A to end B; `None` at a free end
     /// (n_lines x (n_elements + 1)).
     nodes: Vec<Vec<Option<usize>>>,
+    /// The elements, several at a time.
+    elements: Vec<FrameBatch>,
 }
 
 /// Half of an element, for the connector on one of its sides.
@@ -138,6 +141,7 @@ fn build(plan: &Plan<'_>) -> Result<Lines, SystemError> {
     let mut dem = Dem {
         connectors: Vec::new(),
         nodes: Vec::new(),
+        elements: FrameBatch::all(&frames, 0..frames.len()),
     };
     for index in 0..model.lines.len() {
         dem.connect(plan, index, &shape)?;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use catenix_numerics::{BlockMatrix, Matrix3, TangentWeights, Vector3, Vector6};
 
-use super::super::{Evaluation, NodeResult, Situation};
+use super::super::{Evaluation, NodeResult, Situation, clear_lines};
 use super::assembly::add_internal;
 use super::element::ends::{Blocks, End, Prediction};
 use super::element::field::{Carried, ElementBlocks, Field, POINT_COUNT};
@@ -105,6 +105,7 @@ impl<K: Kernel> Evaluation for FemEvaluation<K> {
         residual: &mut [Vector6],
         matrix: &mut BlockMatrix,
     ) {
+        clear_lines(at.system, weights.is_some(), residual, matrix);
         let fem = &*self.fem;
         let topology = &at.system.topology;
         for (index, (part, kernel)) in fem.parts.iter().zip(&fem.kernels).enumerate() {

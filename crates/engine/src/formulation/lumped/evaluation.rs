@@ -5,7 +5,7 @@ use std::sync::Arc;
 use catenix_numerics::so3::hat;
 use catenix_numerics::{Block6, BlockMatrix, Matrix3, TangentWeights, Vector3, Vector6, six};
 
-use super::super::{Evaluation, NodeResult, Situation};
+use super::super::{Evaluation, NodeResult, Situation, clear_lines};
 use super::assembly::Band;
 use super::element::bend::BendState;
 use super::element::guide::GuideState;
@@ -240,6 +240,7 @@ impl Evaluation for LumpedEvaluation {
         residual: &mut [Vector6],
         matrix: &mut BlockMatrix,
     ) {
+        clear_lines(at.system, weights.is_some(), residual, matrix);
         self.gather(at);
         self.evaluate(at);
         let lumped = Arc::clone(&self.lumped);
