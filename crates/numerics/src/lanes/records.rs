@@ -101,39 +101,7 @@ pub fn add_records<T: Lane, I: Record, const R: usize>(
     records: &mut [I],
     index: &[usize],
 ) {
-    let numbers = I::numbers_mut(records);
-    let zero = values[0].same(0.0);
-    let mut start = 0;
-    while start < R {
-        let first = begin::<T>(start, R);
-        // Nothing twice, and nothing to the record behind a short one.
-        let mut square = [zero; MOST_LANES];
-        let mut k = start;
-        while k < R && k < first + T::COUNT {
-            square[k - first] = values[k];
-            k += 1;
-        }
-        let square = T::transposed(square);
-        let mut lane = 0;
-        while lane < T::COUNT {
-            if lane < index.len() {
-                let at = I::LENGTH * index[lane] + first;
-                if at + T::COUNT <= numbers.len() {
-                    let room = &mut numbers[at..at + T::COUNT];
-                    let sum = T::read_some(square[lane].token(), room) + square[lane];
-                    sum.write_some(room);
-                } else {
-                    let mut row = [0.0; MOST_LANES];
-                    square[lane].write(&mut row);
-                    for (number, value) in numbers[at..].iter_mut().zip(row) {
-                        *number += value;
-                    }
-                }
-            }
-            lane += 1;
-        }
-        start = first + T::COUNT;
-    }
+    scatter::<T, I, R>(values, records, index, true);
 }
 
 /// Writes what the lanes hold over the records `index`, as many records as there are indices.
@@ -146,33 +114,54 @@ pub fn put_records<T: Lane, I: Record, const R: usize>(
     records: &mut [I],
     index: &[usize],
 ) {
+    scatter::<T, I, R>(values, records, index, false);
+}
+
+#[inline(always)]
+fn scatter<T: Lane, I: Record, const R: usize>(
+    values: &[T; R],
+    records: &mut [I],
+    index: &[usize],
+    add: bool,
+) {
     let numbers = I::numbers_mut(records);
-    let zero = values[0].same(0.0);
     let mut start = 0;
     while start < R {
-        let first = begin::<T>(start, R);
-        let mut square = [zero; MOST_LANES];
-        let mut k = first;
-        while k < R && k < first + T::COUNT {
-            square[k - first] = values[k];
+        let mut square = [values[start]; MOST_LANES];
+        let mut k = 0;
+        while k < T::COUNT && start + k < R {
+            square[k] = values[start + k];
             k += 1;
         }
         let square = T::transposed(square);
         let mut lane = 0;
         while lane < T::COUNT {
             if lane < index.len() {
-                let at = I::LENGTH * index[lane] + first;
-                if first + T::COUNT <= R {
-                    square[lane].write_some(&mut numbers[at..at + T::COUNT]);
+                let at = I::LENGTH * index[lane] + start;
+                if start + T::COUNT <= R {
+                    let room = &mut numbers[at..at + T::COUNT];
+                    let own = square[lane];
+                    let sum = if add {
+                        T::read_some(own.token(), room) + own
+                    } else {
+                        own
+                    };
+                    sum.write_some(room);
                 } else {
+                    // Not a number further: what is written in one piece and read in another waits.
                     let mut row = [0.0; MOST_LANES];
                     square[lane].write(&mut row);
-                    numbers[at..at + R - first].copy_from_slice(&row[..R - first]);
+                    let room = &mut numbers[at..at + R - start];
+                    let mut k = 0;
+                    while k < R - start {
+                        room[k] = if add { room[k] + row[k] } else { row[k] };
+                        k += 1;
+                    }
                 }
             }
             lane += 1;
         }
-        start = first + T::COUNT;
+        start += T::COUNT;
     }
 }
 
