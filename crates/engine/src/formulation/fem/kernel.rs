@@ -14,9 +14,6 @@ pub(super) trait Kernel: Debug + Clone + Send + Sync + 'static {
     /// The element at one configuration.
     type State: Debug + Clone + Copy + Send;
 
-    /// Whether the element's rotations are determined only by its bending stiffness.
-    const NEEDS_BENDING: bool;
-
     fn new(section: ElementSection) -> Self;
 
     fn section(&self) -> &ElementSection;
@@ -38,11 +35,9 @@ pub(super) trait Kernel: Debug + Clone + Send + Sync + 'static {
 }
 
 macro_rules! kernel {
-    ($element:ty, $state:ty, needs_bending: $needs_bending:literal) => {
+    ($element:ty, $state:ty) => {
         impl Kernel for $element {
             type State = $state;
-
-            const NEEDS_BENDING: bool = $needs_bending;
 
             fn new(section: ElementSection) -> Self {
                 <$element>::new(section)
@@ -95,5 +90,5 @@ macro_rules! kernel {
     };
 }
 
-kernel!(Corotational, CorotationalState, needs_bending: false);
-kernel!(Exact, ExactState, needs_bending: true);
+kernel!(Corotational, CorotationalState);
+kernel!(Exact, ExactState);

@@ -155,7 +155,7 @@ fn frame_count(_: &Model, line: &Line, layout: &LineLayout) -> usize {
 }
 
 /// Refuses what the elements cannot do.
-fn check<K: Kernel>(model: &Model, line: &Line, layout: &LineLayout) -> Result<(), SystemError> {
+fn check(model: &Model, line: &Line, layout: &LineLayout) -> Result<(), SystemError> {
     let refuse = |what: String| {
         Err(SystemError::Unusable {
             owner: format!("line '{}'", line.name),
@@ -185,14 +185,6 @@ fn check<K: Kernel>(model: &Model, line: &Line, layout: &LineLayout) -> Result<(
                  \"dem\""
             ));
         }
-        let chain = line_type.bending_stiffness.iter().any(|&own| own <= 0.0);
-        if K::NEEDS_BENDING && chain {
-            return refuse(format!(
-                "line type '{name}' has no bending stiffness, without which the rotations of \
-                 geometrically exact elements are not determined; give it one, or use formulation \
-                 = \"fem\""
-            ));
-        }
     }
     Ok(())
 }
@@ -203,7 +195,7 @@ where
     Fem<K>: Formulation,
 {
     for (line, layout) in plan.model.lines.iter().zip(plan.layouts) {
-        check::<K>(plan.model, line, layout)?;
+        check(plan.model, line, layout)?;
     }
     let mut fem = Fem::<K> {
         kernels: Vec::new(),

@@ -1,9 +1,9 @@
 //! The geometrically exact beam element of Reissner and Simo: two nodes, total Lagrangian.
 //!
-//! Rotations are interpolated along the one-parameter group between the two sections, which turns
-//! with them (Crisfield and Jelenic), and the strains are taken at the middle, where one point of
-//! integration keeps the element from locking. What a constant curvature makes of the ends is
-//! then exact for any size of rotation.
+//! Between the two sections the line is a helix: rotations follow the one-parameter group, which
+//! turns with the sections (Crisfield and Jelenic), positions the strain that is constant along it
+//! (Sonneville, Cardona and Bruls). An arc of any size is exact. What a helix cannot do is to bend
+//! like an S; that deformation is the small one of a beam with shear, against the helix.
 //!
 //! Forces are the exact gradient of the stored energy; the tangent is exact.
 //!
@@ -12,19 +12,17 @@
 use catenix_numerics::{Matrix3, Vector3, so3};
 
 use super::ends::{Blocks, ElementForces, ElementTangent, End, NO_BLOCKS, Prediction, turned};
+use super::reach::{Reach, Stance};
 use super::section::{ElementSection, radial};
 use so3::hat;
-
-/// Shear stiffness over the axial one, for lines that are rigid in shear: some thirty times that
-/// of a real pipe.
-const RIGID_SHEAR: f64 = 10.0;
 
 /// Constant numbers of an element, from its section.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Exact {
     section: ElementSection,
-    /// kappa G A, or what stands for rigidity [N].
-    shear: f64,
+    stance: Stance,
+    /// Stiffness of an S in the planes of local y and z, per length (2) [N].
+    shear: [f64; 2],
 }
 
 /// An element at one configuration. All vectors in the axes of the section at its middle.
@@ -37,9 +35,9 @@ pub struct ExactState {
     /// Half of the rotation vector from the first section to the second (3) [rad].
     half: Vector3,
     factors: Factors,
-    /// Strain: extension, and shear along local y and z (3) [-].
-    pub strain: Vector3,
-    /// Tension and shear forces (3) [N].
+    /// How far the middle line reaches.
+    reach: Reach,
+    /// Tension, and what an S stores along local y and z (3) [N].
     pub force: Vector3,
     /// Torque and bending moments (3) [N m].
     pub moment: Vector3,
@@ -65,8 +63,8 @@ struct Damping {
 struct Factors {
     /// tan(x / 2) / x.
     lag: [f64; 2],
-    /// (x / sin x - 1) / x^2.
-    widen: [f64; 2],
+    /// (x / sin x - 1) / x^2, with its second derivative too.
+    widen: [f64; 3],
 }
 
 impl Factors {
@@ -89,9 +87,13 @@ impl Factors {
                 + t * (31.0 / 7560.0
                     + t * (127.0 / 201_600.0
                         + t * (73.0 / 855_360.0 + t * (1_414_477.0 / 130_767_436_800.0))));
+            let widen_bend = 31.0 / 7560.0
+                + t * (127.0 / 100_800.0
+                    + t * (73.0 / 285_120.0
+                        + t * (1_414_477.0 / 32_691_859_200.0 + t * (8191.0 / 1_245_404_160.0))));
             return Factors {
                 lag: [lag, lag_slope],
-                widen: [widen, widen_slope],
+                widen: [widen, widen_slope, widen_bend],
             };
         }
         let angle = t.sqrt();
@@ -100,9 +102,14 @@ impl Factors {
         let ratio = angle / angle.sin();
         let ratio_slope = 0.5 * ratio * (1.0 - angle / angle.tan()) / t;
         let widen = (ratio - 1.0) / t;
+        let widen_slope = (ratio_slope - widen) / t;
+        let cotangent = 1.0 / angle.tan();
+        let own = 1.0 - angle * cotangent;
+        let own_slope = 0.5 * (1.0 + cotangent * cotangent - cotangent / angle);
+        let ratio_bend = 0.5 * (ratio_slope * own + ratio * own_slope - ratio * own / t) / t;
         Factors {
             lag: [lag, (0.5 * (1.0 + tan * tan) - lag) / (2.0 * t)],
-            widen: [widen, (ratio_slope - widen) / t],
+            widen: [widen, widen_slope, (ratio_bend - 2.0 * widen_slope) / t],
         }
     }
 }
@@ -110,9 +117,15 @@ impl Factors {
 impl Exact {
     /// Source: docs/theory/fem.md, eq. (23).
     pub fn new(section: ElementSection) -> Exact {
-        let rigid = RIGID_SHEAR * section.stiffest();
+        let [by_y, by_z] = section.shear_ratio();
+        // An S that moves along y bends about z.
+        let ratio = [by_z, by_y];
+        let bending = [section.bending[1], section.bending[0]];
+        let length = section.length;
+        let shear = |k: usize| 12.0 * bending[k] / (length * length * (1.0 + ratio[k]));
         Exact {
-            shear: section.shear.unwrap_or(rigid),
+            stance: Stance::new(ratio),
+            shear: [0, 1].map(shear),
             section,
         }
     }
@@ -124,16 +137,17 @@ impl Exact {
 
     /// Largest stiffness against any strain [N].
     pub fn stiffest(&self) -> f64 {
-        self.section.stiffest().max(self.shear)
+        let [y, z] = self.shear;
+        self.section.stiffest().max(y).max(z)
     }
 
-    /// Tension and shear forces at a strain.
+    /// Tension, and what an S stores, at a strain.
     #[inline]
     fn force(&self, strain: &Vector3) -> Vector3 {
         Vector3::new(
             self.section.tension(strain.x).0,
-            self.shear * strain.y,
-            self.shear * strain.z,
+            self.shear[0] * strain.y,
+            self.shear[1] * strain.z,
         )
     }
 
@@ -169,6 +183,12 @@ impl Exact {
         stiffness
     }
 
+    /// Slopes of tension and S at no strain (3) [N].
+    #[inline]
+    fn initial_stretch(&self) -> Vector3 {
+        Vector3::new(self.section.axial, self.shear[0], self.shear[1])
+    }
+
     #[inline]
     fn initial_bending(&self) -> Matrix3 {
         let section = &self.section;
@@ -189,15 +209,18 @@ impl ExactState {
         let axes = ends[0].rotation * so3::exp(&half);
         let back = axes.transpose();
         let span = back * (ends[1].position - ends[0].position);
-        let length = section.length;
-        let strain = (span - Vector3::x() * length) / length;
+        let factors = Factors::new(half.norm_squared());
+        let reach = Reach::new(
+            &element.stance,
+            &(widened(&half, &factors, &span) / section.length),
+        );
         ExactState {
             axes,
             span,
             half,
-            factors: Factors::new(half.norm_squared()),
-            strain,
-            force: element.force(&strain),
+            factors,
+            force: element.force(&reach.strain),
+            reach,
             moment: element.moment(&turn),
             damping: Damping::new(element, ends, &back, &span),
         }
@@ -220,21 +243,61 @@ impl ExactState {
         }
     }
 
-    /// Elastic forces for a force and a moment in the element.
+    /// Elastic forces for stresses in the element.
     #[inline]
     fn local_forces(&self, force: &Vector3, moment: &Vector3) -> ElementForces {
-        let couple = self.span.cross(force);
-        let bend = self.widened(moment) - self.half.cross(&couple) * (0.5 * self.factors.lag[0]);
+        let along = self.reach.pull(force);
+        let force = self.widened(&along);
+        let moment = moment + self.straightening(&along);
+        let couple = self.span.cross(&force);
+        let bend = self.widened(&moment) - self.half.cross(&couple) * (0.5 * self.factors.lag[0]);
         ElementForces {
-            force: *force,
+            force,
             moment: [couple * -0.5 - bend, couple * -0.5 + bend],
         }
+    }
+
+    /// What a pull on the helix, V x / L, does to the turn of its ends.
+    ///
+    /// Source: docs/theory/fem.md, eq. (23a).
+    #[inline]
+    fn straightening(&self, pull: &Vector3) -> Vector3 {
+        let [widen, slope, _] = self.factors.widen;
+        let (by_span, by_pull) = (self.half.cross(&self.span), self.half.cross(pull));
+        let apart = pull.cross(&by_span) + self.span.cross(&by_pull);
+        self.half * (slope * by_pull.dot(&by_span)) + apart * (0.5 * widen)
     }
 
     /// Source: docs/theory/fem.md, eq. (19).
     #[inline]
     fn widened(&self, v: &Vector3) -> Vector3 {
-        v - self.half.cross(&self.half.cross(v)) * self.factors.widen[0]
+        widened(&self.half, &self.factors, v)
+    }
+
+    /// Derivative of [`Self::widened`] by the half turn: X of eq. (22).
+    #[inline]
+    fn widened_by_half(&self, v: &Vector3) -> Matrix3 {
+        let [widen, slope, _] = self.factors.widen;
+        let once = self.half.cross(v);
+        let twice = self.half.cross(&once);
+        (hat(&once) + hat(&self.half) * hat(v)) * widen
+            - twice * self.half.transpose() * (2.0 * slope)
+    }
+
+    /// Second derivative by the half turn of the product of `pull` and the widened span.
+    ///
+    /// Source: docs/theory/fem.md, eq. (22a).
+    fn pull_by_half_twice(&self, pull: &Vector3) -> Matrix3 {
+        let [widen, slope, bend] = self.factors.widen;
+        let (half, span) = (&self.half, &self.span);
+        let (by_span, by_pull) = (half.cross(span), half.cross(pull));
+        let product = by_pull.dot(&by_span);
+        let own = (pull.cross(&by_span) + span.cross(&by_pull)) * 0.5;
+        let mixed = pull * span.transpose();
+        Matrix3::identity() * (2.0 * (slope * product + widen * pull.dot(span)))
+            - (mixed + mixed.transpose()) * widen
+            + half * half.transpose() * (4.0 * bend * product)
+            + (half * own.transpose() + own * half.transpose()) * (4.0 * slope)
     }
 
     /// Exact derivative of [`Self::forces`]. With a `prediction`, its stress takes the place of the
@@ -252,32 +315,41 @@ impl ExactState {
         };
         let half = &self.half;
         let half_hat = hat(half);
-        let ([lag, lag_slope], [widen, widen_slope]) = (self.factors.lag, self.factors.widen);
-        let slope = section.tension(self.strain.x).1;
-        let shear = element.shear;
-        let by_strain =
-            Matrix3::from_diagonal(&(Vector3::new(slope, shear, shear) / section.length));
+        let [lag, lag_slope] = self.factors.lag;
+        let slope = section.tension(self.reach.strain.x).1;
+        let [shear_y, shear_z] = element.shear;
+        let slopes = Vector3::new(slope, shear_y, shear_z);
+        let pull = self.reach.pull(&force);
+        let by_reach = self.reach.pull_slope(&slopes, &force) / section.length;
         let span_hat = hat(&self.span);
-        let couple = self.span.cross(&force);
         // By the mean of the spins and by their difference: the middle's spin, and its half turn.
         let middle = [identity, half_hat * (-0.5 * lag)];
-        let wide = identity - half_hat * half_hat * widen;
+        let wide = identity - half_hat * half_hat * self.factors.widen[0];
         let span = [identity, span_hat, span_hat * middle[1]];
-        let by_force = span.map(|span| by_strain * span);
+        // Of the stored energy, by the span and by the half turn.
+        let reach_by_half = self.widened_by_half(&self.span);
+        let by_span = wide * by_reach * wide;
+        let mixed = wide * by_reach * reach_by_half + self.widened_by_half(&pull);
+        let by_half =
+            reach_by_half.transpose() * by_reach * reach_by_half + self.pull_by_half_twice(&pull);
+        let mut by_force = span.map(|span| by_span * span);
+        let mut by_moment = span.map(|span| mixed.transpose() * span * 0.5);
+        by_force[2] += mixed * wide * 0.5;
+        by_moment[2] += by_half * wide * 0.25 + element.moment_stiffness(&(half * 2.0)) * wide;
+        let local = self.local_forces(&force, &moment);
+        let force = local.force;
+        let moment = moment + self.straightening(&pull);
+        let couple = self.span.cross(&force);
         let by_couple = [0, 1, 2].map(|c: usize| span_hat * by_force[c] - hat(&force) * span[c]);
         let turned_couple = half.cross(&couple);
-        let twice = half.cross(&half.cross(&moment));
-        let bend_by_half = (hat(&half.cross(&moment)) + half_hat * hat(&moment)) * widen
-            - twice * half.transpose() * (2.0 * widen_slope)
-            + hat(&couple) * (0.5 * lag)
+        let bend_by_half = self.widened_by_half(&moment) + hat(&couple) * (0.5 * lag)
             - turned_couple * half.transpose() * lag_slope;
-        let stiffness = element.moment_stiffness(&(half * 2.0));
-        let local = self.local_forces(&force, &moment);
         let bend = (local.moment[1] - local.moment[0]) * 0.5;
         let mut force_rows = by_force;
         let mut couple_rows = by_couple.map(|by| by * -0.5);
-        let mut bend_rows = by_couple.map(|by| half_hat * by * (-0.5 * lag));
-        bend_rows[2] += (wide * stiffness + bend_by_half * 0.5) * wide;
+        let mut bend_rows =
+            [0, 1, 2].map(|c: usize| wide * by_moment[c] + half_hat * by_couple[c] * (-0.5 * lag));
+        bend_rows[2] += bend_by_half * wide * 0.5;
         for c in 1..3 {
             force_rows[c] -= hat(&force) * middle[c - 1];
             couple_rows[c] += hat(&couple) * 0.5 * middle[c - 1];
@@ -315,9 +387,7 @@ impl ExactState {
         let section = &element.section;
         let d = &self.damping;
         let factor = section.damping / section.length;
-        let by_rate = Matrix3::from_diagonal(
-            &(Vector3::new(section.axial, element.shear, element.shear) * factor),
-        );
+        let by_rate = Matrix3::from_diagonal(&(element.initial_stretch() * factor));
         let by_apart = element.initial_bending() * section.damping;
         let span_hat = hat(&self.span);
         let mut by_turn = NO_BLOCKS;
@@ -354,9 +424,11 @@ impl ExactState {
         let mean = back * (moves[1].1 + moves[0].1) * 0.5;
         let middle = mean - self.half.cross(&apart) * (0.5 * self.factors.lag[0]);
         let span = back * (moves[1].0 - moves[0].0) - middle.cross(&self.span);
+        let turn = self.widened(&apart);
+        let reach = self.widened(&span) + self.widened_by_half(&self.span) * turn * 0.5;
         Prediction {
-            strain: self.strain + span / element.section.length,
-            turn: [self.half * 2.0 + self.widened(&apart), Vector3::zeros()],
+            strain: self.reach.predicted(&(reach / element.section.length)),
+            turn: [self.half * 2.0 + turn, Vector3::zeros()],
         }
     }
 
@@ -373,10 +445,12 @@ impl ExactState {
                     + section.bending[1] * curvature.z * curvature.z)
             }
         };
-        let shear = self.strain.y * self.strain.y + self.strain.z * self.strain.z;
+        let strain = &self.reach.strain;
+        let [y, z] = element.shear;
+        let shear = y * strain.y * strain.y + z * strain.z * strain.z;
         section.length
-            * (section.axial_energy(self.strain.x)
-                + 0.5 * element.shear * shear
+            * (section.axial_energy(strain.x)
+                + 0.5 * shear
                 + 0.5 * section.torsion * curvature.x * curvature.x
                 + bending)
     }
@@ -388,10 +462,21 @@ impl ExactState {
         -(d.force.dot(&rate) + d.moment.dot(&d.apart))
     }
 
+    /// Stretch, and S in the planes of local y and z (3) [-].
+    pub fn strain(&self) -> Vector3 {
+        self.reach.strain
+    }
+
     /// Axes of the section at the middle to global axes.
     pub fn axes(&self) -> &Matrix3 {
         &self.axes
     }
+}
+
+/// V v with the half turn's V.
+#[inline]
+fn widened(half: &Vector3, factors: &Factors, v: &Vector3) -> Vector3 {
+    v - half.cross(&half.cross(v)) * factors.widen[0]
 }
 
 impl Damping {
@@ -405,7 +490,7 @@ impl Damping {
         let velocity = back * (ends[1].velocity - ends[0].velocity);
         let mean = back * (ends[0].spin + ends[1].spin) * 0.5;
         let apart = back * (ends[1].spin - ends[0].spin);
-        let stiffness = Vector3::new(section.axial, element.shear, element.shear);
+        let stiffness = element.initial_stretch();
         let rate = (velocity - mean.cross(span)) * (section.damping / section.length);
         Damping {
             force: stiffness.component_mul(&rate),

@@ -13,6 +13,28 @@ use super::section::ElementSection;
 pub enum Element {
     Corotational(Corotational),
     Exact(Exact),
+    /// The exact element on an updated reference: strains count from the last equilibrium, whose
+    /// stresses are there from the start.
+    Updated(Exact, Stresses),
+}
+
+/// Stresses of a geometrically exact element.
+#[derive(Debug, Clone, Copy)]
+pub struct Stresses {
+    /// Tension, and what an S stores (3) [N].
+    pub force: Vector3,
+    /// Torque and bending moments (3) [N m].
+    pub moment: Vector3,
+}
+
+impl Stresses {
+    /// The state between two ends, with these stresses added to it.
+    pub fn on(&self, element: &Exact, ends: &[End; 2]) -> ExactState {
+        let mut state = ExactState::new(element, ends);
+        state.force += self.force;
+        state.moment += self.moment;
+        state
+    }
 }
 
 impl Element {
@@ -37,6 +59,11 @@ impl Element {
                 let state = ExactState::new(element, ends);
                 (state.forces(element), state.tangent(element, prediction))
             }
+            // Predictions know nothing of stresses that were there.
+            Element::Updated(element, stresses) => {
+                let state = stresses.on(element, ends);
+                (state.forces(element), state.tangent(element, None))
+            }
         }
     }
 
@@ -45,7 +72,9 @@ impl Element {
             Element::Corotational(element) => {
                 CorotationalState::new(element, ends).predicted(element, moves)
             }
-            Element::Exact(element) => ExactState::new(element, ends).predicted(element, moves),
+            Element::Exact(element) | Element::Updated(element, _) => {
+                ExactState::new(element, ends).predicted(element, moves)
+            }
         }
     }
 }
