@@ -4,6 +4,21 @@ use catenix_model::Current;
 use catenix_numerics::Vector3;
 use catenix_numerics::time_table::{events, piecewise_linear};
 
+/// A piece of a profile in which the velocity changes evenly with height.
+#[derive(Debug, Clone, Copy)]
+pub struct CurrentPiece {
+    /// Where it begins [m].
+    pub bottom: f64,
+    /// Where it ends [m].
+    pub top: f64,
+    /// A height in or at the end of it [m].
+    pub height: f64,
+    /// Velocity at that height (2) [m/s].
+    pub velocity: [f64; 2],
+    /// Its derivative by height (2) [1/s].
+    pub slope: [f64; 2],
+}
+
 /// A current profile ready for evaluation.
 #[derive(Debug, Clone)]
 pub struct CurrentField {
@@ -29,35 +44,46 @@ impl CurrentField {
     }
 
     /// Velocity at height `z` and its derivative by z, both times `factor`, (3) [m/s], [1/s].
+    #[inline]
+    pub fn at(&self, z: f64, factor: f64) -> (Vector3, Vector3) {
+        let piece = self.piece(z);
+        let ([u, v], [x, y]) = (piece.velocity, piece.slope);
+        let above = z - piece.height;
+        (
+            Vector3::new(u + x * above, v + y * above, 0.0) * factor,
+            Vector3::new(x, y, 0.0) * factor,
+        )
+    }
+
+    /// The piece of the profile around height `z`.
     ///
     /// Source: docs/theory/hydrodynamics.md, eq. (1).
     #[inline]
-    pub fn at(&self, z: f64, factor: f64) -> (Vector3, Vector3) {
+    pub fn piece(&self, z: f64) -> CurrentPiece {
         let profile = &self.current.profile;
-        let depth = -z;
-        let constant = |k: usize| {
-            let [x, y] = profile[k].velocity;
-            (Vector3::new(x, y, 0.0) * factor, Vector3::zeros())
+        let below = profile.partition_point(|point| point.depth <= -z);
+        let (upper, lower) = (
+            below.checked_sub(1).map(|k| &profile[k]),
+            profile.get(below),
+        );
+        let top = upper.map_or(f64::INFINITY, |point| -point.depth);
+        let bottom = lower.map_or(f64::NEG_INFINITY, |point| -point.depth);
+        let (height, velocity, slope) = match (upper, lower) {
+            (None, None) => (0.0, [0.0; 2], [0.0; 2]),
+            (Some(only), None) | (None, Some(only)) => (0.0, only.velocity, [0.0; 2]),
+            (Some(upper), Some(lower)) => {
+                let slope =
+                    [0, 1].map(|k| (upper.velocity[k] - lower.velocity[k]) / (top - bottom));
+                (top, upper.velocity, slope)
+            }
         };
-        if profile.is_empty() {
-            return (Vector3::zeros(), Vector3::zeros());
+        CurrentPiece {
+            bottom,
+            top,
+            height,
+            velocity,
+            slope,
         }
-        let below = profile.partition_point(|point| point.depth <= depth);
-        if below == 0 {
-            return constant(0);
-        }
-        if below == profile.len() {
-            return constant(profile.len() - 1);
-        }
-        let (upper, lower) = (&profile[below - 1], &profile[below]);
-        let span = lower.depth - upper.depth;
-        let share = (depth - upper.depth) / span;
-        let blend = |k: usize| upper.velocity[k] + (lower.velocity[k] - upper.velocity[k]) * share;
-        let slope = |k: usize| -(lower.velocity[k] - upper.velocity[k]) / span;
-        (
-            Vector3::new(blend(0), blend(1), 0.0) * factor,
-            Vector3::new(slope(0), slope(1), 0.0) * factor,
-        )
     }
 }
 

@@ -6,12 +6,13 @@
 use std::ops::Range;
 
 use catenix_numerics::lanes::{
-    Kernel, Lane, MOST_LANES, Mat3, Row, Vec3, block, gather, lane_count, put_records, vectorised,
+    Kernel, Lane, MOST_LANES, Mat3, Record, Row, Vec3, block, gather, lane_count, put_records,
+    vectorised,
 };
 use catenix_numerics::{BlockMatrix, MotionState, TangentWeights, Vector3, Vector6};
 
 use super::Frame;
-use super::frames::{FrameMotion, LoadPowers, frame_motion, touch};
+use super::frames::{FrameMotion, LoadPowers, Sea, frame_motion, touch};
 use crate::body::inertia::{BodyMotion, Tensors, inertia_force, inertia_tangent};
 use crate::formulation::Situation;
 use crate::hydro::morison::DragKernel;
@@ -22,16 +23,18 @@ const NO_ROW: Row = [0.0; MOST_LANES];
 /// As many consecutive frames as are computed at once, and what never changes of them.
 #[derive(Debug, Clone)]
 pub(crate) struct FrameBatch {
-    /// Frames in it.
+    /// The first of them.
+    first: usize,
+    /// How many there are; the properties of the last one fill idle lanes.
     count: usize,
-    /// The last frame fills idle lanes.
-    frames: [usize; MOST_LANES],
     /// Mass, weight, buoyancy, added mass across and along, added inertia (6).
     plain: [Row; 6],
     /// Drag coefficients (3).
     drag: [Row; 3],
     /// Principal moments of inertia, own axis, arm of the buoyancy (9).
     vectors: [Row; 9],
+    /// Length and diameter (2) [m].
+    size: [Row; 2],
 }
 
 impl FrameBatch {
@@ -45,16 +48,15 @@ impl FrameBatch {
 
     fn new(frames: &[Frame], first: usize, count: usize) -> FrameBatch {
         let mut batch = FrameBatch {
+            first,
             count,
-            frames: [0; MOST_LANES],
             plain: [NO_ROW; 6],
             drag: [NO_ROW; 3],
             vectors: [NO_ROW; 9],
+            size: [NO_ROW; 2],
         };
         for lane in 0..MOST_LANES {
-            let k = first + lane.min(count - 1);
-            batch.frames[lane] = k;
-            let frame = &frames[k];
+            let frame = &frames[first + lane.min(count - 1)];
             let plain = [
                 frame.mass,
                 frame.weight,
@@ -73,13 +75,21 @@ impl FrameBatch {
             fill(&mut batch.vectors, lane, frame.inertia.as_slice());
             fill(&mut batch.vectors[3..], lane, frame.axis.as_slice());
             fill(&mut batch.vectors[6..], lane, frame.buoyancy_arm.as_slice());
+            fill(&mut batch.size, lane, &[frame.length, frame.diameter]);
         }
         batch
     }
 
+    /// The frames in it.
     #[inline(always)]
-    fn frames(&self) -> &[usize] {
-        &self.frames[..self.count]
+    pub(crate) fn frames(&self) -> Range<usize> {
+        self.first..self.first + self.count
+    }
+
+    /// Writes what the lanes hold over the numbers of the frames in it.
+    #[inline(always)]
+    pub(crate) fn put<T: Lane, I: Record, const R: usize>(&self, values: &[T; R], to: &mut [I]) {
+        put_records(values, to, self.first, self.count);
     }
 }
 
@@ -127,7 +137,7 @@ pub(crate) fn frame_energies(at: &Situation<'_>, batches: &[FrameBatch]) -> (f64
         buoyancy,
         seabed_damping: 0.0,
     };
-    for &k in batches.iter().flat_map(FrameBatch::frames) {
+    for k in batches.iter().flat_map(FrameBatch::frames) {
         let frame = &at.system.frames[k];
         let m = frame_motion(at.state, k);
         potential += frame.weight * m.position.z;
@@ -159,9 +169,8 @@ impl Kernel for Energies<'_> {
     fn run<T: Lane>(self, token: T::Token) -> [f64; 4] {
         let mut sums = [0.0; 4];
         for batch in self.batches {
-            let surroundings = Surroundings::of::<T>(self.at, batch);
-            let pose = Pose::load(token, self.at.state, batch);
-            let loads = Loads::<T>::new(token, batch, &surroundings, &pose);
+            let pose = FrameState::load(token, self.at.state, batch);
+            let loads = FrameLoads::<T>::new(token, batch, &self.at.sea, &pose);
             let mut each = [NO_ROW; 4];
             let velocity = pose.velocity;
             let mass: T = T::read(token, &batch.plain[0]);
@@ -189,57 +198,109 @@ impl Kernel for Energies<'_> {
     }
 }
 
-/// What is found frame by frame.
-struct Surroundings {
-    /// Velocity of the water and its derivative by height (6).
-    water: [Row; 6],
+/// What is felt of the sea at the heights of frames.
+struct Surroundings<T> {
+    /// Velocity of the water [m/s] and its derivative by height [1/s].
+    water: [Vec3<T>; 2],
     /// Share under water, its derivative by height, and by the slope of the axis (3).
-    wet: [Row; 3],
+    wet: [T; 3],
     /// Whether one of the frames passes through the surface.
     at_surface: bool,
 }
 
-impl Surroundings {
+impl<T: Lane> Surroundings<T> {
     #[inline(always)]
-    fn of<T: Lane>(at: &Situation<'_>, batch: &FrameBatch) -> Surroundings {
-        let mut own = Surroundings {
-            water: [NO_ROW; 6],
-            wet: [NO_ROW; 3],
-            at_surface: false,
+    fn new(token: T::Token, batch: &FrameBatch, sea: &Sea<'_>, height: T, slope: T) -> Self {
+        let size = [
+            T::read(token, &batch.size[0]),
+            T::read(token, &batch.size[1]),
+        ];
+        // Nearly always all of them are under water, and in one piece of the current's profile.
+        let top = (size[0] * slope.abs() + size[1]).mul_add(height.same(0.5), height);
+        let zero = T::splat(token, 0.0);
+        let (wet, at_surface) = if top.all_less(0.0) {
+            ([T::splat(token, 1.0), zero, zero], false)
+        } else {
+            Self::shares(token, batch, height, slope)
         };
-        for (lane, &k) in batch.frames[..T::COUNT].iter().enumerate() {
-            let frame = &at.system.frames[k];
-            let rotation = &at.state.configuration.rotation[k];
-            let height = at.state.configuration.position[k].z;
-            let (water, slope) = at.sea.current.at(height, at.sea.current_factor);
-            fill(&mut own.water, lane, water.as_slice());
-            fill(&mut own.water[3..], lane, slope.as_slice());
-            let rise = [0, 1, 2].map(|d| rotation[(2, d)] * frame.axis[d]);
-            let rise = rise[0] + rise[1] + rise[2];
-            let wet = Submergence::new(height, rise, frame.length, frame.diameter);
-            let wet_row = [wet.share, wet.by_height, wet.by_slope];
-            fill(&mut own.wet, lane, &wet_row);
-            own.at_surface |= wet.by_height != 0.0;
+        Surroundings {
+            water: water(token, sea, height),
+            wet,
+            at_surface,
         }
-        own
+    }
+
+    /// Shares under water and their derivatives, frame by frame.
+    #[inline(always)]
+    fn shares(token: T::Token, batch: &FrameBatch, height: T, slope: T) -> ([T; 3], bool) {
+        let (mut heights, mut slopes, mut rows) = (NO_ROW, NO_ROW, [NO_ROW; 3]);
+        height.write(&mut heights);
+        slope.write(&mut slopes);
+        let mut at_surface = false;
+        for lane in 0..T::COUNT {
+            let [length, diameter] = [batch.size[0][lane], batch.size[1][lane]];
+            let wet = Submergence::new(heights[lane], slopes[lane], length, diameter);
+            fill(&mut rows, lane, &[wet.share, wet.by_height, wet.by_slope]);
+            at_surface |= wet.by_height != 0.0;
+        }
+        let wet = [
+            T::read(token, &rows[0]),
+            T::read(token, &rows[1]),
+            T::read(token, &rows[2]),
+        ];
+        (wet, at_surface)
     }
 }
 
-/// Rotations and motions of the frames of a batch.
-struct Pose<T> {
-    rotation: Mat3<T>,
-    velocity: Vec3<T>,
-    motion: BodyMotion<T>,
+/// Velocity of the water at some heights, and its derivative by height.
+#[inline(always)]
+fn water<T: Lane>(token: T::Token, sea: &Sea<'_>, height: T) -> [Vec3<T>; 2] {
+    let mut heights = NO_ROW;
+    height.write(&mut heights);
+    let zero = T::splat(token, 0.0);
+    let factor = sea.current_factor;
+    let piece = sea.current.piece(heights[0]);
+    let inside = (height - T::splat(token, piece.top)).all_less(0.0)
+        && (T::splat(token, piece.bottom) - height).all_less(0.0);
+    if inside {
+        let [x, y] = piece.slope;
+        let [x, y] = [T::splat(token, x * factor), T::splat(token, y * factor)];
+        let [u, v] = piece.velocity;
+        let [u, v] = [T::splat(token, u * factor), T::splat(token, v * factor)];
+        let above = height - piece.height;
+        return [
+            Vec3::new(x.mul_add(above, u), y.mul_add(above, v), zero),
+            Vec3::new(x, y, zero),
+        ];
+    }
+    let mut rows = [NO_ROW; 6];
+    for lane in 0..T::COUNT {
+        let (water, slope) = sea.current.at(heights[lane], factor);
+        fill(&mut rows, lane, water.as_slice());
+        fill(&mut rows[3..], lane, slope.as_slice());
+    }
+    [Vec3::read(token, &rows), Vec3::read(token, &rows[3..])]
 }
 
-impl<T: Lane> Pose<T> {
+/// Positions, rotations and motions of the frames of a batch.
+#[derive(Clone, Copy)]
+pub(crate) struct FrameState<T> {
+    pub position: Vec3<T>,
+    pub rotation: Mat3<T>,
+    pub velocity: Vec3<T>,
+    pub motion: BodyMotion<T>,
+}
+
+impl<T: Lane> FrameState<T> {
     #[inline(always)]
-    fn load(token: T::Token, state: &MotionState, batch: &FrameBatch) -> Pose<T> {
-        let frames = &batch.frames;
-        let [u, v, w, p, q, r] = gather(token, &state.velocity, frames);
-        let [a, b, c, d, e, f] = gather(token, &state.acceleration, frames);
-        Pose {
-            rotation: Mat3::gather(token, &state.configuration.rotation, frames),
+    pub(crate) fn load(token: T::Token, state: &MotionState, batch: &FrameBatch) -> Self {
+        let first = batch.first;
+        let [x, y, z] = gather(token, &state.configuration.position, first);
+        let [u, v, w, p, q, r] = gather(token, &state.velocity, first);
+        let [a, b, c, d, e, f] = gather(token, &state.acceleration, first);
+        FrameState {
+            position: Vec3::new(x, y, z),
+            rotation: Mat3::gather(token, &state.configuration.rotation, first),
             velocity: Vec3::new(u, v, w),
             motion: BodyMotion {
                 spin: Vec3::new(p, q, r),
@@ -247,6 +308,19 @@ impl<T: Lane> Pose<T> {
                 angular_acceleration: Vec3::new(d, e, f),
             },
         }
+    }
+}
+
+/// The factors on the rotations of the frames of a batch.
+#[inline(always)]
+pub(crate) fn turns<T: Lane>(
+    token: T::Token,
+    weights: &TangentWeights<'_>,
+    batch: &FrameBatch,
+) -> Mat3<T> {
+    match weights.rotation {
+        None => Mat3::diagonal(T::splat(token, 1.0)),
+        Some(rotation) => Mat3::gather(token, rotation, batch.first),
     }
 }
 
@@ -263,31 +337,30 @@ impl Kernel for Frames<'_> {
             matrix,
         } = self;
         for batch in batches {
-            let surroundings = Surroundings::of::<T>(at, batch);
-            let pose = Pose::load(token, at.state, batch);
-            let loads = Loads::<T>::new(token, batch, &surroundings, &pose);
-            let [f, m] = loads.total();
-            let sums = [f.x, f.y, f.z, m.x, m.y, m.z];
-            put_records(&sums, residual, batch.frames());
+            let pose = FrameState::load(token, at.state, batch);
+            let loads = FrameLoads::<T>::new(token, batch, &at.sea, &pose);
+            batch.put(&loads.total(), residual);
             if let Some(weights) = weights {
-                let turn = match weights.rotation {
-                    None => Mat3::diagonal(T::splat(token, 1.0)),
-                    Some(rotation) => Mat3::gather(token, rotation, &batch.frames),
-                };
-                let velocity = T::splat(token, weights.velocity);
-                let acceleration = T::splat(token, weights.acceleration);
-                let mut tangent = loads.tangent(velocity, acceleration, turn);
-                if surroundings.at_surface {
-                    loads.add_waterline(&mut tangent);
-                }
-                let [[a, b], [c, d]] = &tangent;
-                put_records(&block([a, b, c, d]), &mut matrix.diagonal, batch.frames());
+                let [[a, b], [c, d]] = &loads.tangent(weights, turns(token, weights, batch));
+                batch.put(&block([a, b, c, d]), &mut matrix.diagonal);
             }
-            if at.sea.seabed.is_some() {
-                for &k in batch.frames() {
-                    add_contact(at, k, weights, residual, matrix);
-                }
-            }
+            add_contacts(at, batch, weights, residual, matrix);
+        }
+    }
+}
+
+/// Adds the forces of the seabed on the frames that touch it.
+#[inline(always)]
+pub(crate) fn add_contacts(
+    at: &Situation<'_>,
+    batch: &FrameBatch,
+    weights: Option<&TangentWeights<'_>>,
+    residual: &mut [Vector6],
+    matrix: &mut BlockMatrix,
+) {
+    if at.sea.seabed.is_some() {
+        for k in batch.frames() {
+            add_contact(at, k, weights, residual, matrix);
         }
     }
 }
@@ -315,7 +388,7 @@ fn add_contact(
 }
 
 /// Inertia and loads of frames, in lanes.
-struct Loads<T> {
+pub(crate) struct FrameLoads<T> {
     axis: Vec3<T>,
     /// Share under water.
     share: T,
@@ -334,22 +407,27 @@ struct Loads<T> {
     /// Derivatives of the share by height and by the slope of the axis.
     by_height: T,
     by_slope: T,
+    /// Whether one of the frames passes through the surface.
+    at_surface: bool,
 }
 
-impl<T: Lane> Loads<T> {
+impl<T: Lane> FrameLoads<T> {
     #[inline(always)]
-    fn new(
+    pub(crate) fn new(
         token: T::Token,
         rows: &FrameBatch,
-        surroundings: &Surroundings,
-        pose: &Pose<T>,
+        sea: &Sea<'_>,
+        pose: &FrameState<T>,
     ) -> Self {
-        let Surroundings { water, wet, .. } = surroundings;
         let rotation = pose.rotation;
         let axis = rotation.times(Vec3::read(token, &rows.vectors[3..]));
-        let share = T::read(token, &wet[0]);
+        let Surroundings {
+            water,
+            wet: [share, by_height, by_slope],
+            at_surface,
+        } = Surroundings::new(token, rows, sea, pose.position.z, axis.z);
         let spin = pose.motion.spin;
-        let relative = Vec3::read(token, water) - pose.velocity;
+        let relative = water[0] - pose.velocity;
         let coefficients = [
             T::read(token, &rows.drag[0]),
             T::read(token, &rows.drag[1]),
@@ -371,7 +449,7 @@ impl<T: Lane> Loads<T> {
             .outer(x)
             .plus_outer(y * T::read(token, &rows.vectors[1]), y)
             .plus_outer(z * T::read(token, &rows.vectors[2]), z);
-        Loads {
+        FrameLoads {
             axis,
             share,
             drag,
@@ -382,18 +460,19 @@ impl<T: Lane> Loads<T> {
             },
             added,
             motion: pose.motion,
-            current_slope: Vec3::read(token, &water[3..]),
+            current_slope: water[1],
             weight: T::read(token, &rows.plain[1]),
             buoyancy: T::read(token, &rows.plain[2]),
             arm: rotation.times(Vec3::read(token, &rows.vectors[6..])),
-            by_height: T::read(token, &wet[1]),
-            by_slope: T::read(token, &wet[2]),
+            by_height,
+            by_slope,
+            at_surface,
         }
     }
 
-    /// Inertia minus loads: force and moment.
+    /// Inertia minus loads: force and moment (6).
     #[inline(always)]
-    fn total(&self) -> [Vec3<T>; 2] {
+    pub(crate) fn total(&self) -> [T; 6] {
         let [force, moment] = inertia_force(&self.tensors, &self.motion);
         let buoyancy = self.buoyancy * self.share;
         let mut force = force.minus(self.share, self.drag_load[0]);
@@ -402,12 +481,14 @@ impl<T: Lane> Loads<T> {
         // Arm x buoyancy.
         moment.x -= self.arm.y * buoyancy;
         moment.y += self.arm.x * buoyancy;
-        [force, moment]
+        [force.x, force.y, force.z, moment.x, moment.y, moment.z]
     }
 
-    /// Derivatives of [`Self::total`] by translation and rotation, but for those through the share.
+    /// Derivatives of [`Self::total`] by translation and rotation.
     #[inline(always)]
-    fn tangent(&self, velocity: T, acceleration: T, turn: Mat3<T>) -> [[Mat3<T>; 2]; 2] {
+    pub(crate) fn tangent(&self, weights: &TangentWeights<'_>, turn: Mat3<T>) -> [[Mat3<T>; 2]; 2] {
+        let velocity = self.share.same(weights.velocity);
+        let acceleration = self.share.same(weights.acceleration);
         let drag = self.drag.derivatives();
         let inertia = inertia_tangent(&self.tensors, &self.motion);
         let by_velocity = self.share * velocity;
@@ -430,7 +511,7 @@ impl<T: Lane> Loads<T> {
         hung.0[2].x -= self.arm.x * up;
         hung.0[2].y -= self.arm.y * up;
         hung.0[2].z -= self.arm.z * up;
-        [
+        let mut tangent = [
             [
                 force_translation,
                 drag.force[1].crossing(turned) + inertia.force_rotation + force_spin.product(turn),
@@ -442,7 +523,11 @@ impl<T: Lane> Loads<T> {
                     + hung
                     + moment_spin.product(turn),
             ],
-        ]
+        ];
+        if self.at_surface {
+            self.add_waterline(&mut tangent);
+        }
+        tangent
     }
 
     /// Adds the derivatives through the share under water.

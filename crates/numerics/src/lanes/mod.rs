@@ -72,6 +72,12 @@ pub trait Lane:
     /// Exchanges rows and columns of the square of the first [`Self::COUNT`] rows.
     fn transposed(square: [Self; MOST_LANES]) -> [Self; MOST_LANES];
 
+    /// Where elements are consecutive: that of the next one. `next` holds those that follow.
+    fn one_on(self, next: Self) -> Self;
+
+    /// Where elements are consecutive: that of the one before. `before` holds those that precede.
+    fn one_back(self, before: Self) -> Self;
+
     /// self x factor + addend
     fn mul_add(self, factor: Self, addend: Self) -> Self;
 
@@ -92,12 +98,6 @@ pub trait Lane:
 
     /// Whether the mask is set anywhere.
     fn any(self, mask: Self::Mask) -> bool;
-
-    /// Number by number, for what is rare or has no vector instruction.
-    fn map(self, f: impl Fn(f64) -> f64) -> Self;
-
-    /// Number by number, of two.
-    fn map_with(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self;
 
     /// `value` for all elements.
     #[inline(always)]
@@ -162,6 +162,16 @@ impl Lane for f64 {
     }
 
     #[inline(always)]
+    fn one_on(self, next: f64) -> f64 {
+        next
+    }
+
+    #[inline(always)]
+    fn one_back(self, before: f64) -> f64 {
+        before
+    }
+
+    #[inline(always)]
     fn mul_add(self, factor: f64, addend: f64) -> f64 {
         self * factor + addend
     }
@@ -194,15 +204,5 @@ impl Lane for f64 {
     #[inline(always)]
     fn any(self, mask: bool) -> bool {
         mask
-    }
-
-    #[inline(always)]
-    fn map(self, f: impl Fn(f64) -> f64) -> f64 {
-        f(self)
-    }
-
-    #[inline(always)]
-    fn map_with(self, other: f64, f: impl Fn(f64, f64) -> f64) -> f64 {
-        f(self, other)
     }
 }

@@ -81,13 +81,6 @@ impl<S: Registers> Pack<S> {
     fn new(s: S, v: S::f64s) -> Self {
         Pack { s, v }
     }
-
-    #[inline(always)]
-    fn row(self) -> Row {
-        let mut row = [0.0; MOST_LANES];
-        self.write(&mut row);
-        row
-    }
 }
 
 impl<S: Registers> Lane for Pack<S> {
@@ -143,6 +136,16 @@ impl<S: Registers> Lane for Pack<S> {
     }
 
     #[inline(always)]
+    fn one_on(self, next: Self) -> Self {
+        Pack::new(self.s, self.s.one_on(self.v, next.v))
+    }
+
+    #[inline(always)]
+    fn one_back(self, before: Self) -> Self {
+        Pack::new(self.s, self.s.one_back(before.v, self.v))
+    }
+
+    #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         Pack::new(self.s, self.s.mul_add_e_f64s(self.v, factor.v, addend.v))
     }
@@ -177,22 +180,6 @@ impl<S: Registers> Lane for Pack<S> {
     fn any(self, mask: S::m64s) -> bool {
         let marks = Self::select(mask, self.same(1.0), self.same(0.0));
         self.s.reduce_max_f64s(marks.v) > 0.0
-    }
-
-    #[inline(always)]
-    fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        let mut row = self.row();
-        row[..Self::COUNT].iter_mut().for_each(|x| *x = f(*x));
-        Self::read(self.s, &row)
-    }
-
-    #[inline(always)]
-    fn map_with(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        let (mut row, other) = (self.row(), other.row());
-        for (x, y) in row[..Self::COUNT].iter_mut().zip(other) {
-            *x = f(*x, y);
-        }
-        Self::read(self.s, &row)
     }
 }
 

@@ -1,10 +1,10 @@
 //! Records of numbers (a position, a velocity, a block of the matrix) into lanes and back, one
 //! record per lane, by squares that are transposed in registers.
 
-use super::{Lane, MOST_LANES};
+use super::{Lane, MOST_LANES, Row};
 
 /// A run of numbers that is stored record after record.
-pub trait Record: Sized {
+pub trait Record: Copy {
     /// Numbers of a record.
     const LENGTH: usize;
 
@@ -38,93 +38,141 @@ record!(crate::Vector6, 6);
 record!(crate::Matrix3, 9);
 record!(crate::Block6, 36);
 
-/// Where the square of numbers that begins at `start` begins, so that it ends with the record if
-/// the record is long enough.
-#[inline(always)]
-fn begin<T: Lane>(start: usize, length: usize) -> usize {
-    start.min(length.saturating_sub(T::COUNT))
+/// Records that may be read beyond: consecutive ones, with room behind them, so that whole registers
+/// can be read.
+#[derive(Debug, Clone, Copy)]
+pub struct Run<'a>(&'a [f64]);
+
+/// Records behind those of the lanes that are read with them: eight numbers are up to three records.
+const BEYOND: usize = 3;
+
+/// A copy of the last records of a list, and more behind them.
+pub type LastRecords<I> = [I; MOST_LANES + BEYOND];
+
+impl<'a> Run<'a> {
+    /// The records from `first` on, one per lane; `room` is for those at the end of the list.
+    ///
+    /// # Panics
+    /// If there is no record `first`.
+    #[inline(always)]
+    pub fn new<T: Lane, I: Record>(
+        records: &'a [I],
+        first: usize,
+        room: &'a mut Option<LastRecords<I>>,
+    ) -> Run<'a> {
+        let wanted = T::COUNT + BEYOND;
+        match records.get(first..first + wanted) {
+            Some(records) => Run(I::numbers(records)),
+            None => Run(I::numbers(&last(records, first, room)[..wanted])),
+        }
+    }
+
+    /// The first `R` numbers of each record.
+    #[inline(always)]
+    pub fn gather<T: Lane, I: Record, const R: usize>(self, token: T::Token) -> [T; R] {
+        // One look at the bounds.
+        let numbers = &self.0[..I::LENGTH * (T::COUNT + BEYOND)];
+        let mut values = [T::splat(token, 0.0); R];
+        let mut start = 0;
+        while start < R {
+            // So that it ends with the record, if the record is long enough.
+            let from = start.min(R.saturating_sub(T::COUNT));
+            let mut square = [values[0]; MOST_LANES];
+            let mut lane = 0;
+            while lane < T::COUNT {
+                let at = I::LENGTH * lane + from;
+                square[lane] = T::read_some(token, &numbers[at..at + T::COUNT]);
+                lane += 1;
+            }
+            let square = T::transposed(square);
+            let mut k = start;
+            while k < R && k < from + T::COUNT {
+                values[k] = square[k - from];
+                k += 1;
+            }
+            start = from + T::COUNT;
+        }
+        values
+    }
 }
 
-/// The first `R` numbers of the records `index`, one record per lane.
+/// The last records, the very last one repeated.
+#[cold]
+#[inline(never)]
+fn last<'a, I: Record>(
+    records: &[I],
+    first: usize,
+    room: &'a mut Option<LastRecords<I>>,
+) -> &'a LastRecords<I> {
+    room.insert(std::array::from_fn(|k| {
+        records[(first + k).min(records.len() - 1)]
+    }))
+}
+
+/// The first `R` numbers of consecutive records, one record per lane. Lanes beyond the last record
+/// hold the last one.
 ///
 /// # Panics
-/// If there is no such record.
+/// If there is no record `first`.
 #[inline(always)]
 pub fn gather<T: Lane, I: Record, const R: usize>(
     token: T::Token,
     records: &[I],
-    index: &[usize; MOST_LANES],
+    first: usize,
 ) -> [T; R] {
-    let numbers = I::numbers(records);
-    let zero = T::splat(token, 0.0);
-    let mut values = [zero; R];
-    let mut start = 0;
-    while start < R {
-        let first = begin::<T>(start, R);
-        let mut square = [zero; MOST_LANES];
-        let mut lane = 0;
-        while lane < T::COUNT {
-            let at = I::LENGTH * index[lane] + first;
-            square[lane] = if at + T::COUNT <= numbers.len() {
-                T::read_some(token, &numbers[at..at + T::COUNT])
-            } else {
-                last(token, &numbers[at..])
-            };
-            lane += 1;
-        }
-        let square = T::transposed(square);
-        let mut k = start;
-        while k < R && k < first + T::COUNT {
-            values[k] = square[k - first];
-            k += 1;
-        }
-        start = first + T::COUNT;
-    }
-    values
+    let mut room = None;
+    Run::new::<T, I>(records, first, &mut room).gather::<T, I, R>(token)
 }
 
-/// Fewer numbers than lanes, at the very end.
-#[inline(always)]
-fn last<T: Lane>(token: T::Token, numbers: &[f64]) -> T {
-    let mut room = [0.0; MOST_LANES];
-    room[..numbers.len()].copy_from_slice(numbers);
-    T::read(token, &room)
-}
-
-/// Adds to the records `index` what the lanes hold, as many records as there are indices.
+/// Adds what the first `count` lanes hold to consecutive records, from `first` on.
 ///
 /// # Panics
-/// If there is no such record.
+/// If there are no such records.
 #[inline(always)]
 pub fn add_records<T: Lane, I: Record, const R: usize>(
     values: &[T; R],
     records: &mut [I],
-    index: &[usize],
+    first: usize,
+    count: usize,
 ) {
-    scatter::<T, I, R>(values, records, index, true);
+    scatter::<T, I, R>(values, records, first, count, true);
 }
 
-/// Writes what the lanes hold over the records `index`, as many records as there are indices.
+/// Writes what the first `count` lanes hold over consecutive records, from `first` on.
 ///
 /// # Panics
-/// If there is no such record.
+/// If there are no such records.
 #[inline(always)]
 pub fn put_records<T: Lane, I: Record, const R: usize>(
     values: &[T; R],
     records: &mut [I],
-    index: &[usize],
+    first: usize,
+    count: usize,
 ) {
-    scatter::<T, I, R>(values, records, index, false);
+    scatter::<T, I, R>(values, records, first, count, false);
 }
 
 #[inline(always)]
 fn scatter<T: Lane, I: Record, const R: usize>(
     values: &[T; R],
     records: &mut [I],
-    index: &[usize],
+    first: usize,
+    count: usize,
     add: bool,
 ) {
     let numbers = I::numbers_mut(records);
+    let (begin, extent) = (I::LENGTH * first, I::LENGTH * T::COUNT);
+    if count < T::COUNT {
+        let mut rows = [[0.0; MOST_LANES]; R];
+        let mut k = 0;
+        while k < R {
+            values[k].write(&mut rows[k]);
+            k += 1;
+        }
+        scatter_some(&rows, &mut numbers[begin..], I::LENGTH, count, add);
+        return;
+    }
+    let window = &mut numbers[begin..begin + extent];
     let mut start = 0;
     while start < R {
         let mut square = [values[start]; MOST_LANES];
@@ -136,32 +184,41 @@ fn scatter<T: Lane, I: Record, const R: usize>(
         let square = T::transposed(square);
         let mut lane = 0;
         while lane < T::COUNT {
-            if lane < index.len() {
-                let at = I::LENGTH * index[lane] + start;
-                if start + T::COUNT <= R {
-                    let room = &mut numbers[at..at + T::COUNT];
-                    let own = square[lane];
-                    let sum = if add {
-                        T::read_some(own.token(), room) + own
-                    } else {
-                        own
-                    };
-                    sum.write_some(room);
+            let at = I::LENGTH * lane + start;
+            if start + T::COUNT <= R {
+                let room = &mut window[at..at + T::COUNT];
+                let own = square[lane];
+                let sum = if add {
+                    T::read_some(own.token(), room) + own
                 } else {
-                    // Not a number further: what is written in one piece and read in another waits.
-                    let mut row = [0.0; MOST_LANES];
-                    square[lane].write(&mut row);
-                    let room = &mut numbers[at..at + R - start];
-                    let mut k = 0;
-                    while k < R - start {
-                        room[k] = if add { room[k] + row[k] } else { row[k] };
-                        k += 1;
-                    }
+                    own
+                };
+                sum.write_some(room);
+            } else {
+                // Not a number further: what is written in one piece and read in another waits.
+                let mut row = [0.0; MOST_LANES];
+                square[lane].write(&mut row);
+                let room = &mut window[at..at + R - start];
+                let mut k = 0;
+                while k < R - start {
+                    room[k] = if add { room[k] + row[k] } else { row[k] };
+                    k += 1;
                 }
             }
             lane += 1;
         }
         start += T::COUNT;
+    }
+}
+
+/// As [`scatter`], where there are fewer records than lanes.
+#[cold]
+#[inline(never)]
+fn scatter_some(rows: &[Row], numbers: &mut [f64], length: usize, count: usize, add: bool) {
+    for (lane, record) in numbers.chunks_mut(length).take(count).enumerate() {
+        for (number, row) in record.iter_mut().zip(rows) {
+            *number = if add { *number } else { 0.0 } + row[lane];
+        }
     }
 }
 
@@ -189,7 +246,7 @@ mod tests {
         records: Vec<I>,
         sums: Vec<I>,
         copies: Vec<I>,
-        index: [usize; MOST_LANES],
+        first: usize,
         count: usize,
     }
 
@@ -200,10 +257,10 @@ mod tests {
 
                 #[inline(always)]
                 fn run<T: Lane>(mut self, token: T::Token) -> Self::Output {
-                    let values: [T; $length] = gather(token, &self.records, &self.index);
+                    let values: [T; $length] = gather(token, &self.records, self.first);
                     let count = self.count.min(T::COUNT);
-                    add_records(&values, &mut self.sums, &self.index[..count]);
-                    put_records(&values, &mut self.copies, &self.index[..count]);
+                    add_records(&values, &mut self.sums, self.first, count);
+                    put_records(&values, &mut self.copies, self.first, count);
                     (self.sums, self.copies, count)
                 }
             }
@@ -219,28 +276,51 @@ mod tests {
     where
         There<I>: Kernel<Output = (Vec<I>, Vec<I>, usize)>,
     {
-        for (index, count) in [
-            ([1, 2, 3, 4, 5, 6, 7, 8], 8),
-            ([8, 0, 5, 2, 7, 7, 7, 7], 5),
-            ([0, 8, 1, 1, 1, 1, 1, 1], 2),
-        ] {
+        for (first, count) in [(0, 8), (1, 8), (1, 5), (6, 3), (8, 1)] {
             let there = || There {
                 records: records(none.clone(), 1.0),
                 sums: records(none.clone(), 1e3),
                 copies: records(none.clone(), -1.0),
-                index,
+                first,
                 count,
             };
             for (sums, copies, count) in on_every_instruction_set(there) {
                 let mut want = (there().sums, there().copies);
-                for &k in &index[..count] {
+                for k in first..first + count {
                     let range = I::LENGTH * k..I::LENGTH * (k + 1);
                     let own = &I::numbers(&there().records)[range.clone()].to_vec();
                     let sums = &mut I::numbers_mut(&mut want.0)[range.clone()];
                     sums.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
                     I::numbers_mut(&mut want.1)[range].copy_from_slice(own);
                 }
-                assert_eq!((sums, copies), want, "records {index:?}, {count} of them");
+                assert_eq!((sums, copies), want, "{count} records from {first} on");
+            }
+        }
+    }
+
+    struct Shifts;
+
+    impl Kernel for Shifts {
+        type Output = (usize, [[f64; MOST_LANES]; 2]);
+
+        #[inline(always)]
+        fn run<T: Lane>(self, token: T::Token) -> Self::Output {
+            let counted = counted(24, 1.0);
+            let read = |k: usize| T::read_some(token, &counted[k * T::COUNT..]);
+            let (before, here, next) = (read(0), read(1), read(2));
+            let mut rows = [[0.0; MOST_LANES]; 2];
+            here.one_back(before).write(&mut rows[0]);
+            here.one_on(next).write(&mut rows[1]);
+            (T::COUNT, rows)
+        }
+    }
+
+    #[test]
+    fn lanes_shift_by_one_element() {
+        for (count, [back, on]) in on_every_instruction_set(|| Shifts) {
+            for lane in 0..count {
+                assert_eq!(back[lane], (count + lane) as f64);
+                assert_eq!(on[lane], (count + lane + 2) as f64);
             }
         }
     }

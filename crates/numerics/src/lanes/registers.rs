@@ -8,12 +8,28 @@ use super::MOST_LANES;
 pub trait Registers: Simd {
     /// Exchanges rows and columns of the square of the first `F64_LANES` rows.
     fn transposed(self, rows: [Self::f64s; MOST_LANES]) -> [Self::f64s; MOST_LANES];
+
+    /// All numbers of `here` but the first, and the first of `next`.
+    fn one_on(self, here: Self::f64s, next: Self::f64s) -> Self::f64s;
+
+    /// The last number of `before`, and all of `here` but the last.
+    fn one_back(self, before: Self::f64s, here: Self::f64s) -> Self::f64s;
 }
 
 impl Registers for pulp::Scalar {
     #[inline(always)]
     fn transposed(self, rows: [f64; MOST_LANES]) -> [f64; MOST_LANES] {
         rows
+    }
+
+    #[inline(always)]
+    fn one_on(self, _: f64, next: f64) -> f64 {
+        next
+    }
+
+    #[inline(always)]
+    fn one_back(self, before: f64, _: f64) -> f64 {
+        before
     }
 }
 
@@ -47,6 +63,18 @@ mod x86 {
             let [c0, c2, c4, c6] = self.fours(even);
             let [c1, c3, c5, c7] = self.fours(odd);
             cast([c0, c1, c2, c3, c4, c5, c6, c7])
+        }
+
+        #[inline(always)]
+        fn one_on(self, here: f64x8, next: f64x8) -> f64x8 {
+            let v = self.avx512f;
+            cast(v._mm512_alignr_epi64::<1>(cast(next), cast(here)))
+        }
+
+        #[inline(always)]
+        fn one_back(self, before: f64x8, here: f64x8) -> f64x8 {
+            let v = self.avx512f;
+            cast(v._mm512_alignr_epi64::<7>(cast(here), cast(before)))
         }
     }
 
@@ -97,6 +125,22 @@ mod x86 {
             let [a, b, c, d] = square;
             [a, b, c, d, rows[4], rows[5], rows[6], rows[7]]
         }
+
+        #[inline(always)]
+        fn one_on(self, here: f64x4, next: f64x4) -> f64x4 {
+            let (v, here, next) = (self.avx, cast(here), cast(next));
+            // (h2 h3 n0 n1), then (h1 h2), (h3 n0).
+            let middle = v._mm256_permute2f128_pd::<0x21>(here, next);
+            cast(v._mm256_shuffle_pd::<0b0101>(here, middle))
+        }
+
+        #[inline(always)]
+        fn one_back(self, before: f64x4, here: f64x4) -> f64x4 {
+            let (v, before, here) = (self.avx, cast(before), cast(here));
+            // (b2 b3 h0 h1), then (b3 h0), (h1 h2).
+            let middle = v._mm256_permute2f128_pd::<0x21>(before, here);
+            cast(v._mm256_shuffle_pd::<0b0101>(middle, here))
+        }
     }
 }
 
@@ -109,5 +153,17 @@ impl Registers for pulp::aarch64::Neon {
         turned[0] = pulp::cast([a, c]);
         turned[1] = pulp::cast([b, d]);
         turned
+    }
+
+    #[inline(always)]
+    fn one_on(self, here: Self::f64s, next: Self::f64s) -> Self::f64s {
+        let ([_, b], [c, _]): ([f64; 2], [f64; 2]) = (pulp::cast(here), pulp::cast(next));
+        pulp::cast([b, c])
+    }
+
+    #[inline(always)]
+    fn one_back(self, before: Self::f64s, here: Self::f64s) -> Self::f64s {
+        let ([_, b], [c, _]): ([f64; 2], [f64; 2]) = (pulp::cast(before), pulp::cast(here));
+        pulp::cast([b, c])
     }
 }

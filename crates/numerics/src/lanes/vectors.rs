@@ -5,7 +5,7 @@
 
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
-use super::{Lane, MOST_LANES, Row, gather};
+use super::{Lane, Row, gather};
 use crate::{Matrix3, Vector3};
 
 /// Three components.
@@ -53,6 +53,36 @@ impl<T: Lane> Vec3<T> {
         self.x.write(&mut rows[0]);
         self.y.write(&mut rows[1]);
         self.z.write(&mut rows[2]);
+    }
+
+    /// Those of the next elements, see [`Lane::one_on`].
+    #[inline(always)]
+    pub fn one_on(self, next: Self) -> Self {
+        Vec3 {
+            x: self.x.one_on(next.x),
+            y: self.y.one_on(next.y),
+            z: self.z.one_on(next.z),
+        }
+    }
+
+    /// Those of the elements before, see [`Lane::one_back`].
+    #[inline(always)]
+    pub fn one_back(self, before: Self) -> Self {
+        Vec3 {
+            x: self.x.one_back(before.x),
+            y: self.y.one_back(before.y),
+            z: self.z.one_back(before.z),
+        }
+    }
+
+    /// `yes` where the mask says so, else `no`.
+    #[inline(always)]
+    pub fn select(mask: T::Mask, yes: Self, no: Self) -> Self {
+        Vec3 {
+            x: T::select(mask, yes.x, no.x),
+            y: T::select(mask, yes.y, no.y),
+            z: T::select(mask, yes.z, no.z),
+        }
     }
 
     /// Scalar product.
@@ -143,10 +173,24 @@ impl<T: Lane> Mat3<T> {
         ])
     }
 
-    /// One matrix per lane.
+    /// Those of the next elements, see [`Lane::one_on`].
     #[inline(always)]
-    pub fn gather(token: T::Token, matrices: &[Matrix3], index: &[usize; MOST_LANES]) -> Self {
-        let [a, b, c, d, e, f, g, h, i] = gather(token, matrices, index);
+    pub fn one_on(self, next: Self) -> Self {
+        let ([a, b, c], [p, q, r]) = (self.0, next.0);
+        Mat3([a.one_on(p), b.one_on(q), c.one_on(r)])
+    }
+
+    /// Those of the elements before, see [`Lane::one_back`].
+    #[inline(always)]
+    pub fn one_back(self, before: Self) -> Self {
+        let ([a, b, c], [p, q, r]) = (self.0, before.0);
+        Mat3([a.one_back(p), b.one_back(q), c.one_back(r)])
+    }
+
+    /// Consecutive matrices, see [`gather`].
+    #[inline(always)]
+    pub fn gather(token: T::Token, matrices: &[Matrix3], first: usize) -> Self {
+        let [a, b, c, d, e, f, g, h, i] = gather(token, matrices, first);
         Mat3([Vec3::new(a, b, c), Vec3::new(d, e, f), Vec3::new(g, h, i)])
     }
 

@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
-use catenix_numerics::{Block6, BlockMatrix, Matrix3, TangentWeights, Vector3, Vector6};
+use catenix_numerics::{BlockMatrix, Matrix3, TangentWeights, Vector3, Vector6};
 
 use super::super::{Evaluation, NodeResult, Situation};
 use super::element::connector::Prediction;
 use super::element::pair::RateWeights;
 use super::links::Links;
 use super::pairs::{EvaluatedPair, scatter};
-use super::{ConnectorLaw, Dem, Place, element_end, nodes};
-use crate::system::frame_kernel::{frame_energies, put_frames};
+use super::{ConnectorLaw, Dem, element_end, nodes};
+use crate::system::frame_kernel::frame_energies;
 use crate::system::frames::{self, frame_motion};
 use crate::system::{Carrier, EnergyTerms, Momentum, Mount, System};
 
@@ -36,7 +36,7 @@ struct Other {
 
 impl DemEvaluation {
     pub(super) fn new(dem: Arc<Dem>, at: &Situation<'_>) -> DemEvaluation {
-        let (links, are_links) = Links::among(&dem.connectors);
+        let (links, are_links) = Links::among(&dem.connectors, at.system.body_frame(0));
         let others = (0..dem.connectors.len()).filter(|&index| !are_links[index]);
         let other = |index| Other {
             index,
@@ -69,8 +69,8 @@ impl Evaluation for DemEvaluation {
         residual: &mut [Vector6],
         matrix: &mut BlockMatrix,
     ) {
-        put_frames(at, &self.dem.elements, weights, residual, matrix);
-        self.links.assemble(at, weights, residual, matrix);
+        let elements = &self.dem.elements;
+        self.links.put(elements, at, weights, residual, matrix);
         for other in &mut self.others {
             let connector = &self.dem.connectors[other.index];
             let mut pair = EvaluatedPair::new(connector, at);
@@ -84,10 +84,6 @@ impl Evaluation for DemEvaluation {
                 }
             }
             if let Some(weights) = weights {
-                if let Place::Link(k) = connector.place {
-                    matrix.upper[k] = Block6::ZERO;
-                    matrix.lower[k] = Block6::ZERO;
-                }
                 let side_turn = |mount: &Mount| match mount.carrier {
                     Carrier::Free(k) => weights.turn(k),
                     Carrier::Vessel(_) => Matrix3::identity(),
@@ -110,7 +106,7 @@ impl Evaluation for DemEvaluation {
     }
 
     fn moving(&mut self, _: &System, increment: &[Vector6]) {
-        self.links.moving(increment);
+        self.links.moving(&self.dem.elements, increment);
         for other in &mut self.others {
             let connector = &self.dem.connectors[other.index];
             other.predicted = other.pair.predicted(connector, increment);

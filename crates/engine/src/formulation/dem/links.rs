@@ -1,26 +1,26 @@
-//! The connectors between the elements of a line, several at a time: those between straight round
-//! linear sections, which are nearly all. The others go one by one ([`super::pairs`]).
+//! The elements of all lines, and the connectors between them, several at a time. Connectors that
+//! are not straight, round and linear are few, and go one by one ([`super::pairs`]).
 
 use catenix_numerics::lanes::{
-    Kernel, Lane, MOST_LANES, Mat3, Row, Vec3, add_records, block, gather, lane_count, put_records,
-    vectorised,
+    Kernel, Lane, MOST_LANES, Mat3, Row, Vec3, block, gather, lane_count, vectorised,
 };
-use catenix_numerics::{BlockMatrix, MotionState, TangentWeights, Vector3, Vector6};
+use catenix_numerics::{BlockMatrix, TangentWeights, Vector3, Vector6};
 
 use super::super::Situation;
 use super::element::connector::predicted_force;
-use super::element::pair_kernel::{PairGeometry, PairLaw, PairTangents, PairWeights};
+use super::element::pair_kernel::{PairGeometry, PairLaw, PairRates, PairTangents, PairWeights};
 use super::{Carrier, Connector, ConnectorLaw, Place};
+use crate::system::frame_kernel::{FrameBatch, FrameLoads, FrameState, add_contacts, turns};
 
 const NO_ROW: Row = [0.0; MOST_LANES];
 
-/// As many links as are computed at once.
+/// The links that begin at the elements of a batch: each leads to the next element.
 #[derive(Debug, Clone)]
-struct Batch {
-    /// Links in it.
-    count: usize,
-    /// Both frames of each link. The last link fills idle lanes.
-    frames: [[usize; MOST_LANES]; 2],
+struct LinkBatch {
+    /// Whether any element has one.
+    any: bool,
+    /// 1 where an element has one, else 0; all else is 0 there too.
+    linked: Row,
     /// Axial, shear, torsional and bending stiffness, and damping time (5).
     law: [Row; 5],
     /// Place of the connection point on the axes of the two frames (2) [m].
@@ -38,7 +38,8 @@ struct Batch {
 /// All links of the lines of a model.
 #[derive(Debug, Clone)]
 pub(super) struct Links {
-    batches: Vec<Batch>,
+    /// As many as there are batches of elements.
+    batches: Vec<LinkBatch>,
     /// Whether there is a prediction.
     predicts: bool,
 }
@@ -74,12 +75,33 @@ fn link_of(connector: &Connector) -> Option<(usize, [f64; 7])> {
 }
 
 impl Links {
-    /// The links among `connectors`, and whether each connector is one.
-    pub(super) fn among(connectors: &[Connector]) -> (Links, Vec<bool>) {
-        let links: Vec<Option<(usize, [f64; 7])>> = connectors.iter().map(link_of).collect();
-        let are = links.iter().map(Option::is_some).collect();
-        let links: Vec<(usize, [f64; 7])> = links.into_iter().flatten().collect();
-        let batches = links.chunks(lane_count()).map(Batch::new).collect();
+    /// The links among `connectors` of `elements` elements, and whether each connector is one.
+    pub(super) fn among(connectors: &[Connector], elements: usize) -> (Links, Vec<bool>) {
+        let batch = LinkBatch {
+            any: false,
+            linked: NO_ROW,
+            law: [NO_ROW; 5],
+            levers: [NO_ROW; 2],
+            damped: false,
+            geometry: [NO_ROW; 13],
+            predicted: [NO_ROW; 4],
+            energy: [NO_ROW; 2],
+        };
+        let mut batches = vec![batch; elements.div_ceil(lane_count())];
+        let mut are = Vec::with_capacity(connectors.len());
+        for connector in connectors {
+            let link = link_of(connector);
+            are.push(link.is_some());
+            let Some((frame, law)) = link else { continue };
+            let (batch, lane) = (&mut batches[frame / lane_count()], frame % lane_count());
+            batch.any = true;
+            batch.linked[lane] = 1.0;
+            batch.damped |= law[4] > 0.0;
+            let rows = batch.law.iter_mut().chain(&mut batch.levers);
+            for (row, value) in rows.zip(law) {
+                row[lane] = value;
+            }
+        }
         let links = Links {
             batches,
             predicts: false,
@@ -91,17 +113,20 @@ impl Links {
         self.predicts = false;
     }
 
-    /// Adds forces of the links and, with `weights`, their derivatives.
-    pub(super) fn assemble(
+    /// Writes inertia and loads of all elements and the forces of the links between them and, with
+    /// `weights`, their derivatives: all that is in the elements' part of residual and matrix.
+    pub(super) fn put(
         &mut self,
+        elements: &[FrameBatch],
         at: &Situation<'_>,
         weights: Option<&TangentWeights<'_>>,
         residual: &mut [Vector6],
         matrix: &mut BlockMatrix,
     ) {
-        vectorised(Assembly {
+        vectorised(Put {
             links: self,
-            state: at.state,
+            elements,
+            at,
             weights,
             residual,
             matrix,
@@ -109,9 +134,10 @@ impl Links {
     }
 
     /// Predicts the gaps after an increment of the frames.
-    pub(super) fn moving(&mut self, increment: &[Vector6]) {
+    pub(super) fn moving(&mut self, elements: &[FrameBatch], increment: &[Vector6]) {
         vectorised(Moving {
             links: self,
+            elements,
             increment,
         });
     }
@@ -121,60 +147,10 @@ impl Links {
         let mut sums = [0.0; 2];
         for batch in &self.batches {
             for (sum, row) in sums.iter_mut().zip(&batch.energy) {
-                *sum += row[..batch.count].iter().sum::<f64>();
+                *sum += row.iter().sum::<f64>();
             }
         }
         sums
-    }
-}
-
-impl Batch {
-    fn new(links: &[(usize, [f64; 7])]) -> Batch {
-        let mut batch = Batch {
-            count: links.len(),
-            frames: [[0; MOST_LANES]; 2],
-            law: [NO_ROW; 5],
-            levers: [NO_ROW; 2],
-            damped: links.iter().any(|(_, law)| law[4] > 0.0),
-            geometry: [NO_ROW; 13],
-            predicted: [NO_ROW; 4],
-            energy: [NO_ROW; 2],
-        };
-        for lane in 0..MOST_LANES {
-            let (frame, law) = &links[lane.min(links.len() - 1)];
-            batch.frames[0][lane] = *frame;
-            batch.frames[1][lane] = *frame + 1;
-            let rows = batch.law.iter_mut().chain(&mut batch.levers);
-            for (row, value) in rows.zip(law) {
-                row[lane] = *value;
-            }
-        }
-        batch
-    }
-
-    /// Both frames of the links that are there.
-    #[inline(always)]
-    fn frames(&self) -> [&[usize]; 2] {
-        [&self.frames[0][..self.count], &self.frames[1][..self.count]]
-    }
-
-    #[inline(always)]
-    fn law<T: Lane>(&self, token: T::Token) -> PairLaw<T> {
-        PairLaw {
-            axial: T::read(token, &self.law[0]),
-            shear: T::read(token, &self.law[1]),
-            torsion: T::read(token, &self.law[2]),
-            bending: T::read(token, &self.law[3]),
-            damping: T::read(token, &self.law[4]),
-        }
-    }
-
-    #[inline(always)]
-    fn levers<T: Lane>(&self, token: T::Token) -> [T; 2] {
-        [
-            T::read(token, &self.levers[0]),
-            T::read(token, &self.levers[1]),
-        ]
     }
 }
 
@@ -190,162 +166,275 @@ fn three<T: Lane>(numbers: &[T; 6], start: usize) -> Vec3<T> {
     Vec3::new(numbers[start], numbers[start + 1], numbers[start + 2])
 }
 
-/// What a connector feels of one of its frames.
-struct Side<T> {
-    position: Vec3<T>,
-    axis: Vec3<T>,
-    /// Second axis, which tells the twist.
-    direction: Vec3<T>,
-    velocity: Vec3<T>,
-    spin: Vec3<T>,
-}
-
-impl<T: Lane> Side<T> {
-    #[inline(always)]
-    fn load(token: T::Token, state: &MotionState, frames: &[usize; MOST_LANES]) -> Side<T> {
-        let [x, y, z] = gather(token, &state.configuration.position, frames);
-        let [a, b, c, d, e, f] = gather(token, &state.configuration.rotation, frames);
-        let [u, v, w, p, q, r] = gather(token, &state.velocity, frames);
-        Side {
-            position: Vec3::new(x, y, z),
-            axis: Vec3::new(a, b, c),
-            direction: Vec3::new(d, e, f),
-            velocity: Vec3::new(u, v, w),
-            spin: Vec3::new(p, q, r),
-        }
-    }
-}
-
-/// The factors on the rotations of frames.
+/// Adds, number by number.
 #[inline(always)]
-fn turns<T: Lane>(
-    token: T::Token,
-    weights: &TangentWeights<'_>,
-    frames: &[usize; MOST_LANES],
-) -> Mat3<T> {
-    match weights.rotation {
-        None => Mat3::diagonal(T::splat(token, 1.0)),
-        Some(rotation) => Mat3::gather(token, rotation, frames),
+fn add<T: Lane, const R: usize>(sums: &mut [T; R], values: &[T; R]) {
+    let mut k = 0;
+    while k < R {
+        sums[k] += values[k];
+        k += 1;
     }
 }
 
-struct Assembly<'a> {
+/// The factors on rotations, where there are weights.
+#[inline(always)]
+fn turns_if<T: Lane>(
+    token: T::Token,
+    weights: Option<&TangentWeights<'_>>,
+    batch: &FrameBatch,
+) -> Mat3<T> {
+    match weights {
+        Some(weights) => turns(token, weights, batch),
+        None => Mat3::zeros(token),
+    }
+}
+
+struct Put<'a> {
     links: &'a mut Links,
-    state: &'a MotionState,
+    elements: &'a [FrameBatch],
+    at: &'a Situation<'a>,
     weights: Option<&'a TangentWeights<'a>>,
     residual: &'a mut [Vector6],
     matrix: &'a mut BlockMatrix,
 }
 
-impl Kernel for Assembly<'_> {
+impl Kernel for Put<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<T: Lane>(self, token: T::Token) {
-        let predicts = self.links.predicts;
-        for batch in &mut self.links.batches {
-            let [first, second] = [
-                Side::load(token, self.state, &batch.frames[0]),
-                Side::load(token, self.state, &batch.frames[1]),
-            ];
-            let (law, levers) = (batch.law::<T>(token), batch.levers::<T>(token));
-            let axes = [first.axis, second.axis];
-            let arms = [axes[0] * levers[0], axes[1] * levers[1]];
-            let gap = second.position - first.position + arms[1] - arms[0];
-            let pair = PairGeometry::new(axes, gap);
-            let twist = pair.twist([first.direction, second.direction]);
-            let extension = pair.extension();
-            let stretch = (law.axial - law.shear) * extension;
-            let elastic = (gap * law.shear).plus(stretch, pair.mean);
-            let moment = pair.round_moment(&law, twist);
-            let spins = [first.spin, second.spin];
-            let gap_velocity = second.velocity - first.velocity + spins[1].cross(arms[1])
-                - spins[0].cross(arms[0]);
-            let rates = pair.rates(spins, gap_velocity);
-            let zero = Vec3::zeros(token);
-            let [damping_force, damping_moment] = if batch.damped {
-                pair.damping(&law, &rates)
-            } else {
-                [zero, zero]
-            };
-            let force = elastic + damping_force;
-            let [first_moment, second_moment] = pair.moments(
-                arms,
-                force,
-                moment + damping_moment,
-                damping_force,
-                pair.turning(stretch),
-            );
-            let frames = batch.frames();
-            let (f, m, n) = (force, first_moment, second_moment);
-            let on_first = [-f.x, -f.y, -f.z, m.x, m.y, m.z];
-            add_records(&on_first, self.residual, frames[0]);
-            let on_second = [f.x, f.y, f.z, n.x, n.y, n.z];
-            add_records(&on_second, self.residual, frames[1]);
-            axes[0].write(&mut batch.geometry);
-            axes[1].write(&mut batch.geometry[3..]);
-            gap.write(&mut batch.geometry[6..]);
-            pair.mean.write(&mut batch.geometry[9..]);
-            pair.inverse.write(&mut batch.geometry[12]);
-            pair.round_energy(&law, twist).write(&mut batch.energy[0]);
-            let power = -(damping_force.dot(rates.gap) + damping_moment.dot(rates.bend));
-            power.write(&mut batch.energy[1]);
-
-            let Some(weights) = self.weights else {
-                continue;
-            };
-            let geometric = if predicts {
-                let tension = law.axial * T::read(token, &batch.predicted[0]);
-                let across = Vec3::read(token, &batch.predicted[1..]);
-                predicted_force(pair.mean, tension, law.shear, across)
-            } else {
-                elastic
-            };
-            let moment_by = pair.round_moment_by_rotations(&law, twist);
-            let mut tangents = pair.elastic_tangent(&law, geometric, levers, &moment_by);
-            if batch.damped && weights.velocity > 0.0 {
-                let own = PairWeights {
-                    velocity: T::splat(token, weights.velocity),
-                    rotation: [
-                        turns(token, weights, &batch.frames[0]),
-                        turns(token, weights, &batch.frames[1]),
-                    ],
-                };
-                let by = pair.round_damping_by(&law, &rates);
-                pair.add_damping_tangent(
-                    &law,
-                    arms,
-                    &rates,
-                    damping_force,
-                    &by,
-                    &own,
-                    &mut tangents,
-                );
+        let Put {
+            links,
+            elements,
+            at,
+            weights,
+            residual,
+            matrix,
+        } = self;
+        let Some(first) = elements.first() else {
+            return;
+        };
+        let zero = T::splat(token, 0.0);
+        // What links leave to the elements that follow: those of this batch and of the one before,
+        // which change places from batch to batch.
+        let mut forces = [[zero; 6]; 2];
+        let mut blocks = [[Mat3::zeros(token); 4]; 2];
+        let mut pose = FrameState::load(token, at.state, first);
+        let mut turn = turns_if::<T>(token, weights, first);
+        for (index, (batch, link)) in elements.iter().zip(&mut links.batches).enumerate() {
+            let (here, before) = (index % 2, 1 - index % 2);
+            let following = elements.get(index + 1).unwrap_or(batch);
+            let next = FrameState::load(token, at.state, following);
+            let next_turn = turns_if::<T>(token, weights, following);
+            let loads = FrameLoads::<T>::new(token, batch, &at.sea, &pose);
+            let mut sums = loads.total();
+            forces[here] = [zero; 6];
+            let mut own = [Mat3::zeros(token); 4];
+            if let Some(weights) = weights {
+                let [[a, b], [c, d]] = loads.tangent(weights, turn);
+                own = [a, b, c, d];
             }
-            scatter(batch, &tangents, self.matrix);
+            if link.any {
+                let pair = Pair::new(token, link, &pose, &next);
+                let [on_first, on_second] = pair.forces();
+                add(&mut sums, &on_first);
+                forces[here] = on_second;
+                pair.keep(link);
+                if let Some(weights) = weights {
+                    let turns = [turn, turn.one_on(next_turn)];
+                    let t = pair.tangents(token, link, links.predicts, weights, turns);
+                    let ([m, n], f, [f_m, f_n]) =
+                        (&t.moment, t.force.translation, t.force.rotation);
+                    own[0] = own[0] + f;
+                    own[1] = own[1] - f_m;
+                    own[2] = own[2] - m.translation;
+                    own[3] = own[3] + m.rotation[0];
+                    blocks[here] = [f, f_n, n.translation, n.rotation[1]];
+                    let upper = block([&-f, &-f_n, &m.translation, &m.rotation[1]]);
+                    batch.put(&upper, &mut matrix.upper);
+                    let lower = block([&-f, &f_m, &-n.translation, &n.rotation[0]]);
+                    batch.put(&lower, &mut matrix.lower);
+                }
+            } else if weights.is_some() {
+                blocks[here] = [Mat3::zeros(token); 4];
+                batch.put(&[zero; 36], &mut matrix.upper);
+                batch.put(&[zero; 36], &mut matrix.lower);
+            }
+            let mut k = 0;
+            while k < 6 {
+                sums[k] += forces[here][k].one_back(forces[before][k]);
+                k += 1;
+            }
+            batch.put(&sums, residual);
+            if weights.is_some() {
+                let (left, left_before) = (&blocks[here], &blocks[before]);
+                let a = own[0] + left[0].one_back(left_before[0]);
+                let b = own[1] + left[1].one_back(left_before[1]);
+                let c = own[2] + left[2].one_back(left_before[2]);
+                let d = own[3] + left[3].one_back(left_before[3]);
+                batch.put(&block([&a, &b, &c, &d]), &mut matrix.diagonal);
+            }
+            add_contacts(at, batch, weights, residual, matrix);
+            (pose, turn) = (next, next_turn);
         }
     }
 }
 
-/// Adds the blocks on the diagonal, and writes those beside it, which no other connector has.
+/// Of the next element where there is a link, else of the element itself.
 #[inline(always)]
-fn scatter<T: Lane>(batch: &Batch, t: &PairTangents<T>, matrix: &mut BlockMatrix) {
-    let frames = batch.frames();
-    let [first, second] = &t.moment;
-    let (f, [f_first, f_second]) = (&t.force.translation, &t.force.rotation);
-    let values = block([f, &-*f_first, &-first.translation, &first.rotation[0]]);
-    add_records(&values, &mut matrix.diagonal, frames[0]);
-    let values = block([f, f_second, &second.translation, &second.rotation[1]]);
-    add_records(&values, &mut matrix.diagonal, frames[1]);
-    let minus = -*f;
-    let values = block([&minus, &-*f_second, &first.translation, &first.rotation[1]]);
-    put_records(&values, &mut matrix.upper, frames[0]);
-    let values = block([&minus, f_first, &-second.translation, &second.rotation[0]]);
-    put_records(&values, &mut matrix.lower, frames[0]);
+fn other<T: Lane>(linked: T::Mask, own: Vec3<T>, following: Vec3<T>) -> Vec3<T> {
+    Vec3::select(linked, own.one_on(following), own)
+}
+
+/// Links at a state.
+struct Pair<T> {
+    law: PairLaw<T>,
+    levers: [T; 2],
+    arms: [Vec3<T>; 2],
+    geometry: PairGeometry<T>,
+    twist: T,
+    rates: PairRates<T>,
+    stretch: T,
+    /// Elastic force and moment.
+    elastic: [Vec3<T>; 2],
+    /// Force and moment of the damping.
+    damping: [Vec3<T>; 2],
+}
+
+impl<T: Lane> Pair<T> {
+    #[inline(always)]
+    fn new(
+        token: T::Token,
+        link: &LinkBatch,
+        first: &FrameState<T>,
+        following: &FrameState<T>,
+    ) -> Self {
+        let law = PairLaw {
+            axial: T::read(token, &link.law[0]),
+            shear: T::read(token, &link.law[1]),
+            torsion: T::read(token, &link.law[2]),
+            bending: T::read(token, &link.law[3]),
+            damping: T::read(token, &link.law[4]),
+        };
+        let levers = [
+            T::read(token, &link.levers[0]),
+            T::read(token, &link.levers[1]),
+        ];
+        // An element that has no link is linked with itself, without stiffness.
+        let linked = T::splat(token, 0.5).less(T::read(token, &link.linked));
+        let [axis, direction, _] = first.rotation.0;
+        let [next_axis, next_direction, _] = following.rotation.0;
+        let axes = [axis, other(linked, axis, next_axis)];
+        let arms = [axes[0] * levers[0], axes[1] * levers[1]];
+        let between = other(linked, first.position, following.position) - first.position;
+        let geometry = PairGeometry::new(axes, between + arms[1] - arms[0]);
+        let twist = geometry.twist([direction, other(linked, direction, next_direction)]);
+        let stretch = (law.axial - law.shear) * geometry.extension();
+        let elastic = [
+            (geometry.gap * law.shear).plus(stretch, geometry.mean),
+            geometry.round_moment(&law, twist),
+        ];
+        let spins = [
+            first.motion.spin,
+            other(linked, first.motion.spin, following.motion.spin),
+        ];
+        let gap_velocity = other(linked, first.velocity, following.velocity) - first.velocity
+            + spins[1].cross(arms[1])
+            - spins[0].cross(arms[0]);
+        let rates = geometry.rates(spins, gap_velocity);
+        let damping = if link.damped {
+            geometry.damping(&law, &rates)
+        } else {
+            [Vec3::zeros(token); 2]
+        };
+        Pair {
+            law,
+            levers,
+            arms,
+            geometry,
+            twist,
+            rates,
+            stretch,
+            elastic,
+            damping,
+        }
+    }
+
+    /// What the residuals of both frames get: force and moment (6) each.
+    #[inline(always)]
+    fn forces(&self) -> [[T; 6]; 2] {
+        let f = self.elastic[0] + self.damping[0];
+        let [m, n] = self.geometry.moments(
+            self.arms,
+            f,
+            self.elastic[1] + self.damping[1],
+            self.damping[0],
+            self.geometry.turning(self.stretch),
+        );
+        [
+            [-f.x, -f.y, -f.z, m.x, m.y, m.z],
+            [f.x, f.y, f.z, n.x, n.y, n.z],
+        ]
+    }
+
+    /// Keeps what energies and the next prediction need.
+    #[inline(always)]
+    fn keep(&self, link: &mut LinkBatch) {
+        let [first, second] = self.geometry.axes;
+        first.write(&mut link.geometry);
+        second.write(&mut link.geometry[3..]);
+        self.geometry.gap.write(&mut link.geometry[6..]);
+        self.geometry.mean.write(&mut link.geometry[9..]);
+        self.geometry.inverse.write(&mut link.geometry[12]);
+        let energy = self.geometry.round_energy(&self.law, self.twist);
+        energy.write(&mut link.energy[0]);
+        let [force, moment] = self.damping;
+        let power = -(force.dot(self.rates.gap) + moment.dot(self.rates.bend));
+        power.write(&mut link.energy[1]);
+    }
+
+    #[inline(always)]
+    fn tangents(
+        &self,
+        token: T::Token,
+        link: &LinkBatch,
+        predicts: bool,
+        weights: &TangentWeights<'_>,
+        turns: [Mat3<T>; 2],
+    ) -> PairTangents<T> {
+        let (law, pair) = (&self.law, &self.geometry);
+        let geometric = if predicts {
+            let tension = law.axial * T::read(token, &link.predicted[0]);
+            let across = Vec3::read(token, &link.predicted[1..]);
+            predicted_force(pair.mean, tension, law.shear, across)
+        } else {
+            self.elastic[0]
+        };
+        let moment_by = pair.round_moment_by_rotations(law, self.twist);
+        let mut tangents = pair.elastic_tangent(law, geometric, self.levers, &moment_by);
+        if link.damped && weights.velocity > 0.0 {
+            let own = PairWeights {
+                velocity: T::splat(token, weights.velocity),
+                rotation: turns,
+            };
+            let by = pair.round_damping_by(law, &self.rates);
+            pair.add_damping_tangent(
+                law,
+                self.arms,
+                &self.rates,
+                self.damping[0],
+                &by,
+                &own,
+                &mut tangents,
+            );
+        }
+        tangents
+    }
 }
 
 struct Moving<'a> {
     links: &'a mut Links,
+    elements: &'a [FrameBatch],
     increment: &'a [Vector6],
 }
 
@@ -355,13 +444,15 @@ impl Kernel for Moving<'_> {
     #[inline(always)]
     fn run<T: Lane>(self, token: T::Token) {
         self.links.predicts = true;
-        for batch in &mut self.links.batches {
-            let [first, second]: [[T; 6]; 2] = [
-                gather(token, self.increment, &batch.frames[0]),
-                gather(token, self.increment, &batch.frames[1]),
-            ];
-            let kept = &batch.geometry;
-            let inverse = T::read(token, &batch.geometry[12]);
+        let Some(first) = self.elements.first() else {
+            return;
+        };
+        let mut own: [T; 6] = gather(token, self.increment, first.frames().start);
+        for (index, link) in self.links.batches.iter_mut().enumerate() {
+            let following = self.elements.get(index + 1).unwrap_or(first);
+            let next: [T; 6] = gather(token, self.increment, following.frames().start);
+            let kept = &link.geometry;
+            let inverse = T::read(token, &kept[12]);
             let pair = PairGeometry {
                 axes: [at::<T>(token, kept, 0), at::<T>(token, kept, 3)],
                 gap: at::<T>(token, kept, 6),
@@ -370,15 +461,21 @@ impl Kernel for Moving<'_> {
                 // Not needed here.
                 one_plus_cos: inverse,
             };
-            let levers = batch.levers::<T>(token);
+            let levers = [
+                T::read(token, &link.levers[0]),
+                T::read(token, &link.levers[1]),
+            ];
             let [a, b] = pair.axes;
+            let [shift, turn] = [three(&own, 0), three(&own, 3)];
+            let [next_shift, next_turn] = [three(&next, 0), three(&next, 3)];
             let (extension, across) = pair.predicted(
                 [a * levers[0], b * levers[1]],
-                three(&second, 0) - three(&first, 0),
-                [three(&first, 3), three(&second, 3)],
+                shift.one_on(next_shift) - shift,
+                [turn, turn.one_on(next_turn)],
             );
-            extension.write(&mut batch.predicted[0]);
-            across.write(&mut batch.predicted[1..]);
+            extension.write(&mut link.predicted[0]);
+            across.write(&mut link.predicted[1..]);
+            own = next;
         }
     }
 }
@@ -394,6 +491,7 @@ mod tests {
     use crate::formulation::dem::element::connector::Prediction;
     use crate::formulation::dem::element::pair::RateWeights;
     use crate::formulation::dem::element::stiffness::ConnectorStiffness;
+    use crate::system::frame_kernel::put_frames;
     use crate::system::tangent_test::moving_system;
 
     /// A chain through all frames of a system, whatever these are.
@@ -431,6 +529,8 @@ mod tests {
     ) -> (Vec<Vector6>, BlockMatrix, [f64; 2]) {
         let mut residual = vec![Vector6::zeros(); topology.frame_count()];
         let mut matrix = BlockMatrix::zeros(topology);
+        let elements = FrameBatch::all(&at.system.frames, 0..topology.frame_count());
+        put_frames(at, &elements, Some(weights), &mut residual, &mut matrix);
         let mut energy = [0.0; 2];
         for (k, connector) in connectors.iter().enumerate() {
             let mut pair = EvaluatedPair::new(connector, at);
@@ -463,18 +563,19 @@ mod tests {
                 tail: None,
             };
             let topology = Topology::new(vec![whole], frames);
-            let (mut links, are) = Links::among(&connectors);
+            let (mut links, are) = Links::among(&connectors, frames);
+            let elements = FrameBatch::all(&at.system.frames, 0..frames);
             assert!(are.iter().all(|&is| is));
             let increment: Vec<Vector6> = (0..frames)
                 .map(|k| Vector6::from_fn(|row, _| 0.02 * ((7 * k + row) as f64).sin()))
                 .collect();
             for increment in [None, Some(increment.as_slice())] {
                 if let Some(increment) = increment {
-                    links.moving(increment);
+                    links.moving(&elements, increment);
                 }
                 let mut residual = vec![Vector6::zeros(); frames];
                 let mut matrix = BlockMatrix::zeros(&topology);
-                links.assemble(at, Some(weights), &mut residual, &mut matrix);
+                links.put(&elements, at, Some(weights), &mut residual, &mut matrix);
                 let (want, want_matrix, energy) =
                     one_by_one(&connectors, &topology, at, weights, increment);
                 // Roundings, of the largest numbers of each block: the frames are far apart and far
