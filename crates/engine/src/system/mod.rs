@@ -14,6 +14,7 @@ mod linearised;
 mod loads;
 pub(crate) mod shape;
 mod solver;
+mod surroundings;
 mod view;
 
 #[cfg(test)]

@@ -278,9 +278,9 @@ mod tests {
     {
         for (first, count) in [(0, 8), (1, 8), (1, 5), (6, 3), (8, 1)] {
             let there = || There {
-                records: records(none.clone(), 1.0),
-                sums: records(none.clone(), 1e3),
-                copies: records(none.clone(), -1.0),
+                records: records(none, 1.0),
+                sums: records(none, 1e3),
+                copies: records(none, -1.0),
                 first,
                 count,
             };

@@ -5,6 +5,8 @@ pub mod element;
 mod ends;
 mod evaluation;
 mod links;
+#[cfg(test)]
+mod links_tests;
 mod natural;
 mod nodes;
 mod pairs;
