@@ -8,6 +8,7 @@ use crate::differences::{self, MOST_POINTS, Weights};
 use crate::implicit::{ImplicitSystem, MotionState, TangentWeights};
 use crate::integrator::{self, Integrator, StepOutcome, StepSettings};
 use crate::newton::{Newton, NewtonFailure, Stage};
+use crate::passes;
 use crate::{Configuration, Matrix3, Vector3, Vector6, so3};
 
 /// The highest order; beyond 6 the formulas are unstable, and 6 is hardly stable.
@@ -68,8 +69,6 @@ struct BdfStage {
     /// Part of the past in the rate of the travel, and in the acceleration.
     past_rate: Vec<Vector6>,
     past_acceleration: Vec<Vector6>,
-    /// Inverse left Jacobians of the rotations of the travel.
-    turns: Vec<Matrix3>,
     rotation_weights: Vec<Matrix3>,
 }
 
@@ -96,7 +95,6 @@ impl Bdf {
                 travel: zeros.clone(),
                 past_rate: zeros.clone(),
                 past_acceleration: zeros.clone(),
-                turns: vec![Matrix3::identity(); n],
                 rotation_weights: vec![Matrix3::identity(); n],
             },
             past: vec![past; max_order.max(2)],
@@ -126,8 +124,8 @@ impl Bdf {
                     state.velocity[k] * back + state.acceleration[k] * (0.5 * back * back);
                 past.velocity[k] = state.velocity[k] + state.acceleration[k] * back;
             }
-            past.configuration.copy_from(&state.configuration);
-            past.configuration.retract(&past.travel);
+            past.configuration
+                .retract_from(&state.configuration, &past.travel);
         }
         self.past_count = 2;
     }
@@ -146,9 +144,7 @@ impl Bdf {
     fn sum_travels(past: &[Past], weights: &[f64], sum: &mut [Vector6]) {
         sum.fill(Vector6::zeros());
         for (past, weight) in past.iter().zip(weights) {
-            for (sum, travel) in sum.iter_mut().zip(&past.travel) {
-                *sum += travel * *weight;
-            }
+            passes::add_multiple(sum, *weight, &past.travel);
         }
     }
 
@@ -161,13 +157,10 @@ impl Bdf {
         let stage = &mut self.stage;
         stage.leading = weights[0];
         Self::sum_travels(&self.past[..order - 1], &weights[2..], &mut stage.past_rate);
-        for k in 0..stage.travel.len() {
-            let older = &self.past[..order - 1];
-            let sum = older.iter().zip(&weights[2..]);
-            stage.past_acceleration[k] = sum.fold(
-                stage.state.velocity[k] * weights[1],
-                |sum, (past, weight)| sum + past.velocity[k] * *weight,
-            );
+        let sum = &mut stage.past_acceleration;
+        passes::multiple(sum, weights[1], &stage.state.velocity);
+        for (past, weight) in self.past[..order - 1].iter().zip(&weights[2..]) {
+            passes::add_multiple(sum, *weight, &past.velocity);
         }
         let ahead = differences::extrapolation(0.0, &times[1..order + 2]);
         Self::sum_travels(&self.past[..order], &ahead[1..], &mut stage.travel);
@@ -185,9 +178,7 @@ impl Bdf {
         let factor = start * spans / leading;
         let weights = difference.map(|weight| weight * factor);
         Self::sum_travels(&self.past[..order], &weights[2..], &mut self.error);
-        for (error, travel) in self.error.iter_mut().zip(&self.stage.travel) {
-            *error += travel * weights[0];
-        }
+        passes::add_multiple(&mut self.error, weights[0], &self.stage.travel);
         system.increment_size(&self.error)
     }
 
@@ -329,7 +320,6 @@ impl Integrator for Bdf {
         }
         self.past_count = (self.past_count + 1).min(self.past.len());
         std::mem::swap(&mut stage.state, &mut stage.trial);
-        stage.state.configuration.orthonormalise();
         self.move_chart();
     }
 
@@ -350,25 +340,21 @@ impl BdfStage {
     /// Source: docs/theory/integration.md, eq. (12).
     fn update(&mut self) {
         let pairs = self.state.configuration.pair_count();
-        for k in 0..self.travel.len() {
-            let (mut velocity, spin) = self.rates(k);
-            if k >= pairs {
-                let turn: Vector3 = self.travel[k].fixed_rows::<3>(3).into();
-                let spin = so3::left_jacobian(&turn) * spin;
-                velocity.fixed_rows_mut::<3>(3).copy_from(&spin);
-            }
-            self.trial.velocity[k] = velocity;
-            self.trial.acceleration[k] = velocity * self.leading + self.past_acceleration[k];
-        }
-        let configuration = &mut self.trial.configuration;
-        configuration.copy_from(&self.state.configuration);
-        configuration.retract(&self.travel);
+        let velocity = &mut self.trial.velocity;
+        passes::multiple(velocity, self.leading, &self.travel);
+        passes::add_multiple(velocity, 1.0, &self.past_rate);
+        integrator::turn_rates(&self.travel[pairs..], &mut velocity[pairs..]);
+        let acceleration = &mut self.trial.acceleration;
+        acceleration.copy_from_slice(&self.past_acceleration);
+        passes::add_multiple(acceleration, self.leading, velocity);
+        let trial = &mut self.trial.configuration;
+        trial.retract_from(&self.state.configuration, &self.travel);
     }
 
-    /// Rate of the travel of a frame at the end of the step: all of it, and that of its rotation.
-    fn rates(&self, k: usize) -> (Vector6, Vector3) {
+    /// Rate of the rotation in the travel of a frame, at the end of the step.
+    fn spin(&self, k: usize) -> Vector3 {
         let rate = self.travel[k] * self.leading + self.past_rate[k];
-        (rate, rate.fixed_rows::<3>(3).into())
+        rate.fixed_rows::<3>(3).into()
     }
 }
 
@@ -379,14 +365,12 @@ impl Stage for BdfStage {
 
     /// Source: docs/theory/integration.md, eq. (13).
     fn linearise(&mut self) {
-        // Points do not turn: at pairs both stay the identity.
+        // Points do not turn: at pairs the weights stay the identity.
         for k in self.state.configuration.pair_count()..self.travel.len() {
             let turn: Vector3 = self.travel[k].fixed_rows::<3>(3).into();
-            let (_, spin) = self.rates(k);
             let inverse = so3::left_jacobian_inverse(&turn);
-            let bend = so3::left_jacobian_derivative(&turn, &spin) / self.leading;
+            let bend = so3::left_jacobian_derivative(&turn, &self.spin(k)) / self.leading;
             self.rotation_weights[k] = Matrix3::identity() + bend * inverse;
-            self.turns[k] = inverse;
         }
     }
 
@@ -399,7 +383,8 @@ impl Stage for BdfStage {
     }
 
     fn correct(&mut self, increment: &[Vector6]) {
-        integrator::add_to_travel(&mut self.travel, increment, &self.turns);
+        let pairs = self.state.configuration.pair_count();
+        integrator::add_to_travel(&mut self.travel, increment, pairs);
         self.update();
     }
 }

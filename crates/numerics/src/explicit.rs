@@ -162,7 +162,6 @@ impl Integrator for CentralDifferences {
 
     fn accept(&mut self) {
         std::mem::swap(&mut self.state, &mut self.trial);
-        self.state.configuration.orthonormalise();
     }
 
     fn restart(&mut self, acceleration: &[Vector6]) {

@@ -5,10 +5,12 @@
 //! "Lie group generalized-alpha time integration of constrained flexible multibody systems",
 //! Mech. Mach. Theory 48 (2012) 121-137, here with left multiplication of global rotations.
 
+use crate::alpha_passes::{self, Guess, Start};
 use crate::implicit::{CarriedMotion, ImplicitSystem, MotionState, TangentWeights};
 use crate::integrator::{self, Integrator, StepOutcome, StepSettings};
 use crate::newton::{Newton, NewtonFailure, Stage};
-use crate::{Matrix3, Vector6, so3};
+use crate::passes::add_multiple;
+use crate::{Matrix3, Vector6};
 
 /// The four coefficients of the method.
 ///
@@ -52,8 +54,6 @@ impl AlphaParameters {
 pub struct GeneralisedAlpha {
     stage: AlphaStage,
     newton: Newton,
-    /// Local error of the last trial (n).
-    error: Vec<Vector6>,
 }
 
 impl GeneralisedAlpha {
@@ -65,20 +65,26 @@ impl GeneralisedAlpha {
             stage: AlphaStage {
                 parameters,
                 algorithmic: state.acceleration.clone(),
-                jerk: zeros.clone(),
+                change: zeros.clone(),
+                last_step: 0.0,
                 carried: CarriedMotion::none(n),
                 trial_carried: CarriedMotion::none(n),
                 carries: None,
                 placed_for: 0.0,
                 trial: state.clone(),
-                trial_algorithmic: zeros.clone(),
+                trial_change: zeros.clone(),
                 step: 0.0,
-                travel: zeros.clone(),
+                guess: Guess {
+                    travel: zeros.clone(),
+                    velocity: zeros.clone(),
+                    acceleration: zeros.clone(),
+                },
+                corrected: false,
+                travel: zeros,
                 rotation_weights: vec![Matrix3::identity(); n],
                 state,
             },
             newton: Newton::new(n),
-            error: zeros,
         }
     }
 }
@@ -100,8 +106,7 @@ impl Integrator for GeneralisedAlpha {
         let solution = self
             .newton
             .solve(system, end_time, &mut self.stage, &settings.newton)?;
-        self.stage.local_error(&mut self.error);
-        let local_error = system.increment_size(&self.error);
+        let local_error = self.stage.local_error(system);
         Ok(StepOutcome {
             iterations: solution.iterations,
             residual: solution.residual,
@@ -119,7 +124,7 @@ impl Integrator for GeneralisedAlpha {
         let stage = &mut self.stage;
         stage.state.acceleration.copy_from_slice(acceleration);
         stage.algorithmic.copy_from_slice(acceleration);
-        stage.jerk.fill(Vector6::zeros());
+        stage.change.fill(Vector6::zeros());
         stage.placed_for = 0.0;
         stage.carries = None;
     }
@@ -132,8 +137,9 @@ struct AlphaStage {
     state: MotionState,
     /// Algorithmic acceleration of the current state.
     algorithmic: Vec<Vector6>,
-    /// Change of acceleration over the last step, per second.
-    jerk: Vec<Vector6>,
+    /// Change of acceleration over the last step beside what is carried, and its size [s].
+    change: Vec<Vector6>,
+    last_step: f64,
     /// Motion that the supports impose on the current state, and on the trial state.
     carried: CarriedMotion,
     trial_carried: CarriedMotion,
@@ -142,9 +148,13 @@ struct AlphaStage {
     /// Step size for which `algorithmic` is placed in time; 0 before the first step.
     placed_for: f64,
     trial: MotionState,
-    trial_algorithmic: Vec<Vector6>,
+    /// Change of acceleration to the trial state.
+    trial_change: Vec<Vector6>,
     /// Size of the step to the trial state [s].
     step: f64,
+    /// Where constant algorithmic acceleration leads, once the trial state is elsewhere.
+    guess: Guess,
+    corrected: bool,
     /// Translation and rotation vector from the current to the trial configuration.
     travel: Vec<Vector6>,
     rotation_weights: Vec<Matrix3>,
@@ -152,14 +162,11 @@ struct AlphaStage {
 
 impl AlphaStage {
     /// Finds the motion that the supports impose at both ends of a step.
-    fn carry(&mut self, system: &dyn ImplicitSystem, end_time: f64, step: f64) {
+    fn carry(&mut self, system: &mut dyn ImplicitSystem, end_time: f64, step: f64) {
         if self.carries.is_none() {
             let carries = system.carry(end_time - step, &mut self.carried);
             if carries {
-                let carried = self.carried.acceleration.iter();
-                for (a, carried) in self.algorithmic.iter_mut().zip(carried) {
-                    *a -= carried;
-                }
+                add_multiple(&mut self.algorithmic, -1.0, &self.carried.acceleration);
             }
             self.carries = Some(carries);
         }
@@ -168,24 +175,19 @@ impl AlphaStage {
         }
     }
 
-    /// Acceleration of a frame at the end of the trial step less that at its start, both beside
-    /// what the supports impose.
-    fn change_of_acceleration(&self, k: usize) -> Vector6 {
-        let carried = self.trial_carried.acceleration[k] - self.carried.acceleration[k];
-        self.trial.acceleration[k] - self.state.acceleration[k] - carried
-    }
-
     fn accept(&mut self) {
-        for k in 0..self.jerk.len() {
-            self.jerk[k] = self.change_of_acceleration(k) / self.step;
+        if self.corrected {
+            let by_travel = 1.0 / (self.parameters.beta * self.step * self.step);
+            let ends = [&self.travel, &self.guess.travel];
+            alpha_passes::move_algorithmic(&mut self.algorithmic, by_travel, ends);
         }
         if self.carries == Some(true) {
             std::mem::swap(&mut self.carried, &mut self.trial_carried);
         }
+        std::mem::swap(&mut self.change, &mut self.trial_change);
+        self.last_step = self.step;
         self.placed_for = self.step;
         std::mem::swap(&mut self.state, &mut self.trial);
-        std::mem::swap(&mut self.algorithmic, &mut self.trial_algorithmic);
-        self.state.configuration.orthonormalise();
     }
 
     /// Constant algorithmic acceleration over the step.
@@ -193,24 +195,44 @@ impl AlphaStage {
         self.step = step;
         // The algorithmic acceleration belongs to a time (alpha_m - alpha_f) h after the step's
         // start, so it moves when the step size changes (eq. (7)).
-        let mut shift = 0.0;
-        if self.placed_for > 0.0 {
-            shift = (self.parameters.alpha_m - self.parameters.alpha_f) * (step - self.placed_for);
+        if self.placed_for > 0.0 && self.placed_for != step {
+            let AlphaParameters {
+                alpha_m, alpha_f, ..
+            } = self.parameters;
+            let shift = (alpha_m - alpha_f) * (step - self.placed_for);
+            add_multiple(&mut self.algorithmic, shift / self.last_step, &self.change);
             self.placed_for = step;
         }
-        for k in 0..self.travel.len() {
-            self.algorithmic[k] += self.jerk[k] * shift;
-            let (start, end) = (&self.carried, &self.trial_carried);
-            let velocity = self.state.velocity[k] - start.velocity[k];
-            self.travel[k] = end.travel[k] - start.travel[k]
-                + velocity * step
-                + self.algorithmic[k] * (0.5 * step * step);
-        }
-        self.update();
+        let carries = self.carries == Some(true);
+        let start = Start {
+            state: &self.state,
+            algorithmic: &self.algorithmic,
+            carried: carries.then_some([&self.carried, &self.trial_carried]),
+        };
+        let alpha_f = self.parameters.alpha_f;
+        alpha_passes::predict(&start, step, alpha_f, &mut self.travel, &mut self.trial);
+        self.corrected = false;
+        self.move_configuration();
     }
 
-    /// Trial configuration, velocity and acceleration from the travel of the step.
-    fn update(&mut self) {
+    /// Remembers where the trial state is, before it goes elsewhere.
+    fn keep_guess(&mut self) {
+        self.guess.travel.copy_from_slice(&self.travel);
+        std::mem::swap(&mut self.guess.velocity, &mut self.trial.velocity);
+        std::mem::swap(&mut self.guess.acceleration, &mut self.trial.acceleration);
+        self.corrected = true;
+    }
+
+    /// Trial configuration from the travel of the step.
+    fn move_configuration(&mut self) {
+        let trial = &mut self.trial.configuration;
+        trial.retract_from(&self.state.configuration, &self.travel);
+    }
+
+    /// Derivatives of velocity and acceleration by the travel of the step [1/s, 1/s2].
+    ///
+    /// Source: docs/theory/integration.md, eq. (5a).
+    fn by_travel(&self) -> [f64; 2] {
         let AlphaParameters {
             alpha_m,
             alpha_f,
@@ -218,34 +240,22 @@ impl AlphaStage {
             gamma,
         } = self.parameters;
         let step = self.step;
-        for k in 0..self.travel.len() {
-            // What the supports impose stays out of the formulas.
-            let (start, end) = (&self.carried, &self.trial_carried);
-            let velocity = self.state.velocity[k] - start.velocity[k];
-            let acceleration = self.state.acceleration[k] - start.acceleration[k];
-            let travel = self.travel[k] - (end.travel[k] - start.travel[k]);
-            let old = self.algorithmic[k];
-            let new = (travel - velocity * step - old * ((0.5 - beta) * step * step))
-                / (beta * step * step);
-            self.trial_algorithmic[k] = new;
-            self.trial.velocity[k] =
-                velocity + (old * (1.0 - gamma) + new * gamma) * step + end.velocity[k];
-            self.trial.acceleration[k] =
-                (new * (1.0 - alpha_m) + old * alpha_m - acceleration * alpha_f) / (1.0 - alpha_f)
-                    + end.acceleration[k];
-        }
-        self.trial
-            .configuration
-            .copy_from(&self.state.configuration);
-        self.trial.configuration.retract(&self.travel);
+        [
+            gamma / (beta * step),
+            (1.0 - alpha_m) / ((1.0 - alpha_f) * beta * step * step),
+        ]
     }
 
+    /// Size of the local error of the trial step [m].
+    ///
     /// Source: docs/theory/integration.md, eq. (8).
-    fn local_error(&self, error: &mut [Vector6]) {
+    fn local_error(&mut self, system: &dyn ImplicitSystem) -> f64 {
+        let carries = self.carries == Some(true);
+        let carried = carries.then_some([&self.carried, &self.trial_carried]);
+        let ends = [&self.state, &self.trial];
+        alpha_passes::change_of_acceleration(ends, carried, &mut self.trial_change);
         let factor = self.parameters.error_coefficient() * self.step * self.step;
-        for (k, error) in error.iter_mut().enumerate() {
-            *error = self.change_of_acceleration(k) * factor;
-        }
+        factor * system.increment_size(&self.trial_change)
     }
 }
 
@@ -255,32 +265,30 @@ impl Stage for AlphaStage {
     }
 
     fn linearise(&mut self) {
-        let pairs = self.state.configuration.pair_count();
-        let weights = self.rotation_weights.iter_mut().zip(&self.travel);
         // Points do not turn: at pairs the weights stay the identity.
-        for (weight, travel) in weights.skip(pairs) {
-            *weight = so3::left_jacobian_inverse(&travel.fixed_rows::<3>(3).into_owned());
-        }
+        let pairs = self.state.configuration.pair_count();
+        let weights = &mut self.rotation_weights[pairs..];
+        integrator::inverse_jacobians(&self.travel[pairs..], weights);
     }
 
     fn weights(&self) -> TangentWeights<'_> {
-        let AlphaParameters {
-            alpha_m,
-            alpha_f,
-            beta,
-            gamma,
-        } = self.parameters;
-        let step = self.step;
+        let [velocity, acceleration] = self.by_travel();
         TangentWeights {
-            velocity: gamma / (beta * step),
-            acceleration: (1.0 - alpha_m) / ((1.0 - alpha_f) * beta * step * step),
+            velocity,
+            acceleration,
             rotation: Some(&self.rotation_weights),
         }
     }
 
     fn correct(&mut self, increment: &[Vector6]) {
-        integrator::add_to_travel(&mut self.travel, increment, &self.rotation_weights);
-        self.update();
+        if !self.corrected {
+            self.keep_guess();
+        }
+        let pairs = self.state.configuration.pair_count();
+        integrator::add_to_travel(&mut self.travel, increment, pairs);
+        let by_travel = self.by_travel();
+        alpha_passes::follow(&self.travel, &self.guess, by_travel, &mut self.trial);
+        self.move_configuration();
     }
 }
 
@@ -332,7 +340,7 @@ mod tests {
     struct Carried(Tumbler);
 
     impl ImplicitSystem for Carried {
-        fn carry(&self, time: f64, carried: &mut CarriedMotion) -> bool {
+        fn carry(&mut self, time: f64, carried: &mut CarriedMotion) -> bool {
             let (sin, cos) = (1.3 * time).sin_cos();
             carried.travel[0] = Vector6::new(sin, 0.2 * time, 1.0 - cos, 0.0, 0.0, 0.0);
             carried.velocity[0] = Vector6::new(1.3 * cos, 0.2, 1.3 * sin, 0.0, 0.0, 0.0);

@@ -90,7 +90,7 @@ pub trait ImplicitSystem {
     /// the errors of a step: only the difference is integrated.
     ///
     /// Source: docs/theory/integration.md, eq. (17).
-    fn carry(&self, time: f64, carried: &mut CarriedMotion) -> bool {
+    fn carry(&mut self, time: f64, carried: &mut CarriedMotion) -> bool {
         let _ = (time, carried);
         false
     }

@@ -6,6 +6,7 @@
 //! components in the global axes. Rotations are updated by left multiplication: an increment
 //! `theta` turns `R` into `exp(theta) R`.
 
+mod alpha_passes;
 mod bdf;
 mod block;
 mod chains;
@@ -20,7 +21,9 @@ mod implicit;
 mod integrator;
 mod junctions;
 pub mod lanes;
+mod measure;
 mod newton;
+mod passes;
 pub mod so3;
 pub mod spline;
 mod sweep;
@@ -36,7 +39,9 @@ pub use frames::Configuration;
 pub use generalised_alpha::{AlphaParameters, GeneralisedAlpha};
 pub use implicit::{CarriedMotion, ImplicitSystem, MotionState, ResidualSize, TangentWeights};
 pub use integrator::{Integrator, StepOutcome, StepSettings};
+pub use measure::BlockMeasure;
 pub use newton::{NewtonFailure, NewtonSettings};
+pub use passes::negate;
 pub use sweep::Elimination;
 
 /// Three components, global axes unless said otherwise.

@@ -76,7 +76,7 @@ pub(super) fn build(model: &Model) -> Result<System, SystemError> {
     let reference_force = reference_force(model, &frames, &lumps, reference_length);
     let places = shape.position.iter().chain(&shape.second);
     let furthest = places.map(|x| x.amax()).fold(1.0, f64::max);
-    let followers = Followers::new(model, &layouts, &frames, &shape);
+    let followers = Followers::new(model, &vessels, &layouts, &frames, &shape);
     Ok(System {
         followers,
         topology: Topology::new(chains, frames.len()),

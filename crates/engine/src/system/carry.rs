@@ -8,10 +8,11 @@
 //! Source: docs/theory/integration.md, eqs. (16) to (19).
 
 use catenix_model::{EndConnection, Line, LineEnd, Model, SupportRef};
+use catenix_numerics::lanes::{Kernel, Lane, Record, vectorised};
 use catenix_numerics::{CarriedMotion, Configuration, Matrix3, Vector3, Vector6};
 
 use super::{Frame, LineLayout};
-use crate::body::motion::PrescribedMotion;
+use crate::body::motion::{PrescribedMotion, RigidMotion};
 
 /// Rate of motion at which a body's inertia holds against the springs [rad/s].
 const RATE: f64 = 1.0;
@@ -35,6 +36,8 @@ struct VesselPoint {
     vessel: usize,
     /// In the vessel's axes (3) [m].
     arm: Vector3,
+    /// Where it is at t = 0 (3) [m].
+    start: Vector3,
 }
 
 /// A line between its two ends.
@@ -42,8 +45,8 @@ struct VesselPoint {
 struct Follower {
     ends: [Source; 2],
     first_frame: usize,
-    /// Per frame: share of end B in the motion of the block's two halves.
-    shares: Vec<[f64; 2]>,
+    /// Share of end B in every number of the frames (n_frames).
+    shares: Vec<Vector6>,
     /// Whether its blocks are pairs of points.
     pairs: bool,
 }
@@ -61,10 +64,13 @@ enum Source {
 /// Displacement, velocity and acceleration (3 each) [m, m/s, m/s2].
 type Kinematics = [Vector3; 3];
 
+const STILL: Kinematics = [Vector3::new(0.0, 0.0, 0.0); 3];
+
 impl Followers {
     /// `frames` and `shape`: of the whole system, lines before bodies.
     pub(crate) fn new(
         model: &Model,
+        motions: &[PrescribedMotion],
         layouts: &[LineLayout],
         frames: &[Frame],
         shape: &Configuration,
@@ -74,7 +80,7 @@ impl Followers {
             .lines
             .iter()
             .zip(layouts)
-            .map(|(line, layout)| follower(model, line, layout, shape, &mut points))
+            .map(|(line, layout)| follower(model, line, layout, motions, shape, &mut points))
             .collect();
         let springs: Vec<(Matrix3, [Source; 2])> = model
             .lines
@@ -94,60 +100,103 @@ impl Followers {
         }
     }
 
-    /// Writes the motion at `time`; returns whether there is any.
+    /// Writes the motion that goes with that of the vessels; returns whether there is any.
     ///
     /// Source: docs/theory/integration.md, eqs. (17) and (19).
-    pub(crate) fn carry(
-        &self,
-        vessels: &[PrescribedMotion],
-        time: f64,
-        carried: &mut CarriedMotion,
-    ) -> bool {
+    pub(crate) fn carry(&self, vessels: &[RigidMotion], carried: &mut CarriedMotion) -> bool {
         if self.points.is_empty() {
             return false;
         }
-        let point = |k: usize| self.points[k].kinematics(vessels, time);
+        let point = |k: usize| self.points[k].kinematics(vessels);
         for (body, map) in self.bodies.iter().enumerate() {
-            let mut sum: Kinematics = [Vector3::zeros(); 3];
+            let mut sum = STILL;
             for (k, share) in map {
                 for (sum, of_point) in sum.iter_mut().zip(point(*k)) {
                     *sum += share * of_point;
                 }
             }
-            set(
-                carried,
-                self.first_body + body,
-                &[sum, [Vector3::zeros(); 3]],
-            );
+            set(carried, self.first_body + body, &sum);
         }
         for line in &self.lines {
             let of_end = |source: Source| match source {
-                Source::Still => [Vector3::zeros(); 3],
+                Source::Still => STILL,
                 Source::Point(k) => point(k),
                 Source::Body(k) => get(carried, self.first_body + k),
             };
             let ends = line.ends.map(of_end);
-            for (index, shares) in line.shares.iter().enumerate() {
-                let at = |share: f64| -> Kinematics {
-                    std::array::from_fn(|k| ends[0][k] + (ends[1][k] - ends[0][k]) * share)
-                };
-                let second = if line.pairs {
-                    at(shares[1])
-                } else {
-                    [Vector3::zeros(); 3]
-                };
-                set(carried, line.first_frame + index, &[at(shares[0]), second]);
+            let mut patterns = [[[0.0; PERIOD]; 2]; 3];
+            for (k, pattern) in patterns.iter_mut().enumerate() {
+                let between = [ends[0][k], ends[1][k] - ends[0][k]];
+                for (pattern, vector) in pattern.iter_mut().zip(between) {
+                    for (place, number) in pattern.iter_mut().enumerate() {
+                        // The rotations of a frame do not follow.
+                        if line.pairs || place % 6 < 3 {
+                            *number = vector[place % 3];
+                        }
+                    }
+                }
             }
+            let frames = line.first_frame..line.first_frame + line.shares.len();
+            let lists = [
+                &mut carried.travel,
+                &mut carried.velocity,
+                &mut carried.acceleration,
+            ];
+            vectorised(AlongLine {
+                shares: Vector6::numbers(&line.shares),
+                patterns: &patterns,
+                to: lists.map(|list| Vector6::numbers_mut(&mut list[frames.clone()])),
+            });
         }
         true
     }
 }
 
-fn set(carried: &mut CarriedMotion, frame: usize, halves: &[Kinematics; 2]) {
-    let block = |k: usize| {
-        let (a, b) = (&halves[0][k], &halves[1][k]);
-        Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z)
-    };
+/// Numbers after which those of frames, and the registers that hold them, repeat.
+const PERIOD: usize = 24;
+
+/// Motion between the ends of a line, over all numbers of its frames.
+struct AlongLine<'a> {
+    shares: &'a [f64],
+    /// Displacement, velocity and acceleration: of end A, and of end B beside it.
+    patterns: &'a [[[f64; PERIOD]; 2]; 3],
+    to: [&'a mut [f64]; 3],
+}
+
+impl AlongLine<'_> {
+    #[inline(always)]
+    fn at<T: Lane>(&mut self, token: T::Token, i: usize) {
+        let share = T::read_some(token, &self.shares[i..]);
+        let mut k = 0;
+        while k < 3 {
+            let start = T::read_some(token, &self.patterns[k][0][i % PERIOD..]);
+            let way = T::read_some(token, &self.patterns[k][1][i % PERIOD..]);
+            way.mul_add(share, start).write_some(&mut self.to[k][i..]);
+            k += 1;
+        }
+    }
+}
+
+impl Kernel for AlongLine<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<T: Lane>(mut self, token: T::Token) {
+        let mut i = 0;
+        while i + T::COUNT <= self.shares.len() {
+            self.at::<T>(token, i);
+            i += T::COUNT;
+        }
+        while i < self.shares.len() {
+            self.at::<f64>((), i);
+            i += 1;
+        }
+    }
+}
+
+/// Writes the motion of a body.
+fn set(carried: &mut CarriedMotion, frame: usize, motion: &Kinematics) {
+    let block = |k: usize| Vector6::new(motion[k].x, motion[k].y, motion[k].z, 0.0, 0.0, 0.0);
     carried.travel[frame] = block(0);
     carried.velocity[frame] = block(1);
     carried.acceleration[frame] = block(2);
@@ -159,17 +208,24 @@ fn get(carried: &CarriedMotion, frame: usize) -> Kinematics {
 }
 
 impl VesselPoint {
-    fn kinematics(&self, vessels: &[PrescribedMotion], time: f64) -> Kinematics {
-        let vessel = &vessels[self.vessel];
-        let (start, motion) = (vessel.at(0.0), vessel.at(time));
+    fn new(motions: &[PrescribedMotion], vessel: usize, arm: Vector3) -> VesselPoint {
+        let start = motions[vessel].at(0.0);
+        VesselPoint {
+            vessel,
+            arm,
+            start: start.position + start.rotation * arm,
+        }
+    }
+
+    fn kinematics(&self, vessels: &[RigidMotion]) -> Kinematics {
+        let motion = &vessels[self.vessel];
         let arm = motion.rotation * self.arm;
         let around = motion.spin.cross(&arm);
         let acceleration = motion.acceleration
             + motion.angular_acceleration.cross(&arm)
             + motion.spin.cross(&around);
-        let from_start = arm - start.rotation * self.arm;
         [
-            motion.position - start.position + from_start,
+            motion.position + arm - self.start,
             motion.velocity + around,
             acceleration,
         ]
@@ -180,6 +236,7 @@ fn follower(
     model: &Model,
     line: &Line,
     layout: &LineLayout,
+    motions: &[PrescribedMotion],
     shape: &Configuration,
     points: &mut Vec<VesselPoint>,
 ) -> Follower {
@@ -191,10 +248,11 @@ fn follower(
             SupportRef::Body(body) => Source::Body(body),
             SupportRef::Vessel(vessel) if model.vessels[vessel].motions.is_empty() => Source::Still,
             SupportRef::Vessel(vessel) => {
-                points.push(VesselPoint {
+                points.push(VesselPoint::new(
+                    motions,
                     vessel,
-                    arm: Vector3::from(*point_local),
-                });
+                    Vector3::from(*point_local),
+                ));
                 Source::Point(points.len() - 1)
             }
         }),
@@ -215,11 +273,11 @@ fn follower(
     let pairs = layout.first_frame < shape.pair_count();
     let shares = (0..layout.frame_count).map(|k| {
         let place = k as f64;
-        if pairs {
-            [share(place + 0.25), share(place + 0.75)]
-        } else {
-            [share(place + 0.5), 0.0]
-        }
+        let halves = match pairs {
+            true => [share(place + 0.25), share(place + 0.75)],
+            false => [share(place + 0.5), 0.0],
+        };
+        Vector6::from_fn(|row, _| halves[row / 3])
     });
     Follower {
         ends,

@@ -1,8 +1,9 @@
 //! The system as the numerics see it: residual, matrix, increment.
 
 use catenix_numerics::{
-    Block6, BlockLu, BlockMatrix, CarriedMotion, Elimination, ExplicitSystem, Factorisation,
-    ImplicitSystem, Matrix3, MotionState, ResidualSize, TangentWeights, Vector3, Vector6,
+    Block6, BlockLu, BlockMatrix, BlockMeasure, CarriedMotion, Elimination, ExplicitSystem,
+    Factorisation, ImplicitSystem, Matrix3, MotionState, ResidualSize, TangentWeights, Vector3,
+    Vector6, negate,
 };
 
 use super::System;
@@ -34,6 +35,11 @@ pub struct SystemSolver<'a> {
     load_control: Option<LoadControl>,
     /// Factor on each load, as last evaluated.
     pub(super) load_factors: Vec<f64>,
+    /// Time that vessels and factors belong to, if to any.
+    placed_at: Option<f64>,
+    /// Size of residuals [N] and of increments [m].
+    residual_measure: BlockMeasure,
+    increment_measure: BlockMeasure,
     pub(super) lines: Box<dyn Evaluation>,
     pub(super) matrix: BlockMatrix,
     factors: Elimination,
@@ -72,6 +78,9 @@ impl<'a> SystemSolver<'a> {
             vessels_move,
             load_control: None,
             load_factors: vec![0.0; system.model.loads.len()],
+            placed_at: None,
+            residual_measure: measure(system, |length| 1.0 / length),
+            increment_measure: measure(system, |length| 0.5 * length),
             lines: {
                 let at = Situation {
                     system,
@@ -97,6 +106,7 @@ impl<'a> SystemSolver<'a> {
     /// Puts loads under the control of a factor, to follow an equilibrium path.
     pub(crate) fn control_loads(&mut self, control: LoadControl) {
         self.load_control = Some(control);
+        self.placed_at = None;
         // At limit and branch points the matrix is singular.
         self.factors.exchange_rows();
     }
@@ -105,6 +115,7 @@ impl<'a> SystemSolver<'a> {
     pub(crate) fn set_load_factor(&mut self, factor: f64) {
         if let Some(control) = &mut self.load_control {
             control.factor = factor;
+            self.placed_at = None;
         }
     }
 
@@ -172,6 +183,28 @@ impl<'a> SystemSolver<'a> {
         }
     }
 
+    /// Moves vessels, and what varies with time, to `time`.
+    fn place(&mut self, time: f64) {
+        if self.placed_at == Some(time) {
+            return;
+        }
+        self.placed_at = Some(time);
+        for (motion, vessel) in self.vessels.iter_mut().zip(&self.system.vessels) {
+            *motion = vessel.at(time);
+            if !self.vessels_move {
+                *motion = motion.stopped();
+            }
+        }
+        for (factor, load) in self.load_factors.iter_mut().zip(&self.system.model.loads) {
+            *factor = variation::factor(&load.variation, time);
+        }
+        if let Some(control) = &self.load_control {
+            for &load in &control.loads {
+                self.load_factors[load] = control.factor;
+            }
+        }
+    }
+
     /// `state` with its surroundings; the vessels are where the last assembly put them.
     pub(super) fn situation<'s>(&'s self, time: f64, state: &'s MotionState) -> Situation<'s> {
         Situation {
@@ -192,6 +225,9 @@ impl Clone for SystemSolver<'_> {
             vessels: self.vessels.clone(),
             load_control: self.load_control.clone(),
             load_factors: self.load_factors.clone(),
+            placed_at: self.placed_at,
+            residual_measure: self.residual_measure.clone(),
+            increment_measure: self.increment_measure.clone(),
             lines: self.lines.duplicate(),
             matrix: self.matrix.clone(),
             factors: self.factors.clone(),
@@ -199,6 +235,17 @@ impl Clone for SystemSolver<'_> {
             explicit_room: self.explicit_room.clone(),
         }
     }
+}
+
+/// Measures blocks by a factor on the rotations of frames, from their length [m]. The second point
+/// of a pair counts as the first one does.
+fn measure(system: &System, of_length: impl Fn(f64) -> f64) -> BlockMeasure {
+    let pairs = system.pair_count();
+    let frames = system.frames.iter().enumerate();
+    BlockMeasure::new(frames.map(|(k, frame)| match k < pairs {
+        true => 1.0,
+        false => of_length(frame.residual_length),
+    }))
 }
 
 fn sea(system: &System, time: f64, current_acts: bool) -> Sea<'_> {
@@ -220,9 +267,12 @@ impl ImplicitSystem for SystemSolver<'_> {
         self.system.frames.len()
     }
 
-    fn carry(&self, time: f64, carried: &mut CarriedMotion) -> bool {
-        let system = self.system;
-        self.vessels_move && system.followers.carry(&system.vessels, time, carried)
+    fn carry(&mut self, time: f64, carried: &mut CarriedMotion) -> bool {
+        if !self.vessels_move {
+            return false;
+        }
+        self.place(time);
+        self.system.followers.carry(&self.vessels, carried)
     }
 
     fn begin(&mut self) {
@@ -236,20 +286,7 @@ impl ImplicitSystem for SystemSolver<'_> {
         weights: Option<&TangentWeights<'_>>,
         residual: &mut [Vector6],
     ) {
-        for (motion, vessel) in self.vessels.iter_mut().zip(&self.system.vessels) {
-            *motion = vessel.at(time);
-            if !self.vessels_move {
-                *motion = motion.stopped();
-            }
-        }
-        for (factor, load) in self.load_factors.iter_mut().zip(&self.system.model.loads) {
-            *factor = variation::factor(&load.variation, time);
-        }
-        if let Some(control) = &self.load_control {
-            for &load in &control.loads {
-                self.load_factors[load] = control.factor;
-            }
-        }
+        self.place(time);
         let at = Situation {
             system: self.system,
             sea: sea(self.system, time, self.current_acts),
@@ -272,7 +309,7 @@ impl ImplicitSystem for SystemSolver<'_> {
         self.factors
             .factorise_and_solve(topology, &self.matrix, residual, increment)
             .map_err(|error| error.frame)?;
-        increment.iter_mut().for_each(|x| *x = -*x);
+        negate(increment);
         Ok(())
     }
 
@@ -288,42 +325,12 @@ impl ImplicitSystem for SystemSolver<'_> {
     }
 
     fn residual_size(&self, residual: &[Vector6]) -> ResidualSize {
-        let mut size = ResidualSize {
-            newtons: 0.0,
-            frame: 0,
-        };
-        let pairs = self.system.pair_count();
-        for (frame, (r, properties)) in residual.iter().zip(&self.system.frames).enumerate() {
-            let force = r.fixed_rows::<3>(0).norm();
-            let rest = r.fixed_rows::<3>(3).norm();
-            // The second point of a pair feels a force as well.
-            let newtons = match frame < pairs {
-                true => force.max(rest),
-                false => force.max(rest / properties.residual_length),
-            };
-            // A residual that is not a number must not hide behind a comparison.
-            if newtons > size.newtons || !newtons.is_finite() {
-                size = ResidualSize { newtons, frame };
-                if !newtons.is_finite() {
-                    break;
-                }
-            }
-        }
-        size
+        let (newtons, frame) = self.residual_measure.largest(residual);
+        ResidualSize { newtons, frame }
     }
 
     fn increment_size(&self, increment: &[Vector6]) -> f64 {
-        let pairs = self.system.pair_count();
-        let moves = increment.iter().zip(&self.system.frames).enumerate();
-        let moves = moves.map(|(k, (d, frame))| {
-            let shift = d.fixed_rows::<3>(0).norm();
-            let rest = d.fixed_rows::<3>(3).norm();
-            match k < pairs {
-                true => shift.max(rest),
-                false => shift.max(rest * 0.5 * frame.residual_length),
-            }
-        });
-        moves.fold(0.0, f64::max)
+        self.increment_measure.largest(increment).0
     }
 
     fn explicit(&mut self) -> Option<&mut dyn ExplicitSystem> {

@@ -13,14 +13,20 @@ mod functions;
 mod pack;
 mod records;
 mod registers;
+mod rotations;
 mod vectors;
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 pub use functions::{angle_over_sine, atan2};
+#[cfg(test)]
+pub(crate) use pack::on_every_instruction_set;
 pub use pack::{lane_count, vectorised};
 pub use records::{Record, add_records, gather, put_records};
+pub use rotations::{
+    exp, left_jacobian_inverse, left_jacobian_inverse_times, left_jacobian_times, orthonormalise,
+};
 pub use vectors::{Mat3, Vec3, block};
 
 /// Most elements that are computed at once.

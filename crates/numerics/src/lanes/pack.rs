@@ -58,7 +58,7 @@ impl<K: Kernel, S: Registers> NullaryFnOnce for On<K, S> {
 
 /// Computes a kernel with everything that this processor has: plain numbers too.
 #[cfg(test)]
-pub(super) fn on_every_instruction_set<K: Kernel>(kernel: impl Fn() -> K) -> Vec<K::Output> {
+pub(crate) fn on_every_instruction_set<K: Kernel>(kernel: impl Fn() -> K) -> Vec<K::Output> {
     let s = pulp::Scalar::new();
     let mut outputs = vec![
         kernel().run::<f64>(()),
@@ -178,6 +178,10 @@ impl<S: Registers> Lane for Pack<S> {
 
     #[inline(always)]
     fn any(self, mask: S::m64s) -> bool {
+        // A mask of bits is a number.
+        if let [bits] = bytemuck::bytes_of(&mask) {
+            return *bits != 0;
+        }
         let marks = Self::select(mask, self.same(1.0), self.same(0.0));
         self.s.reduce_max_f64s(marks.v) > 0.0
     }

@@ -194,6 +194,19 @@ impl<T: Lane> Mat3<T> {
         Mat3([Vec3::new(a, b, c), Vec3::new(d, e, f), Vec3::new(g, h, i)])
     }
 
+    /// From nine entries, by columns.
+    #[inline(always)]
+    pub fn of([a, b, c, d, e, f, g, h, i]: [T; 9]) -> Self {
+        Mat3([Vec3::new(a, b, c), Vec3::new(d, e, f), Vec3::new(g, h, i)])
+    }
+
+    /// The nine entries, by columns.
+    #[inline(always)]
+    pub fn entries(self) -> [T; 9] {
+        let [a, b, c] = self.0;
+        [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z]
+    }
+
     /// self x
     #[inline(always)]
     pub fn times(self, v: Vec3<T>) -> Vec3<T> {
