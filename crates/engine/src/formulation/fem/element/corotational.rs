@@ -67,10 +67,16 @@ impl Corotational {
     pub fn new(section: ElementSection) -> Corotational {
         let ratio = section.shear_ratio();
         let per_length = section.bending.map(|bending| bending / section.length);
+        let alike = [0, 1].map(|k| 12.0 * per_length[k] / (1.0 + ratio[k]));
+        let bow = |k: usize| {
+            let share = ratio[k] / (1.0 + ratio[k]);
+            let lengthened = alike[k] / (section.axial * section.length);
+            0.1 * (1.0 - share).powi(2) - 0.5 * share * share + share * lengthened
+        };
         let mut element = Corotational {
-            alike: [0, 1].map(|k| 12.0 * per_length[k] / (1.0 + ratio[k])),
+            alike,
             apart: per_length.map(|stiffness| 4.0 * stiffness),
-            bow: ratio.map(|ratio| 0.1 / ((1.0 + ratio) * (1.0 + ratio))),
+            bow: [0, 1].map(bow),
             rest: [Vector3::zeros(); 2],
             rest_strain: 0.0,
             section,
