@@ -6,6 +6,7 @@ use catenix_numerics::{Matrix3, Vector3, so3};
 use super::super::Plan;
 use super::super::directions::{about_x, has_directions, is_curved, reference_end, wanted_axes};
 use super::element::section::ElementSection;
+use super::ends::is_carried;
 use crate::system::LineLayout;
 use crate::system::shape::{Supports, line_points, loose_direction, net_direction, surface};
 
@@ -50,7 +51,30 @@ pub(super) fn nodes(
             *rotation *= roll;
         }
     }
+    for end in [0, 1] {
+        ease(plan, line, end, &mut rotations);
+    }
     points.into_iter().zip(rotations).collect()
+}
+
+/// Where a first shape leaves a clamp backwards, turns the node next to it half way, so that the
+/// outermost element is bent by less than the half turn beyond which a rotation vector jumps.
+fn ease(plan: &Plan<'_>, line: &Line, end: usize, rotations: &mut [Matrix3]) {
+    let LineEnd::Connected(connection) = &line.ends[end] else {
+        return;
+    };
+    if !is_carried(&line.ends[end]) || rotations.len() < 3 {
+        return;
+    }
+    let node = if end == 0 { 1 } else { rotations.len() - 2 };
+    let clamp =
+        plan.supports.get(connection.to).rotation * Vector3::from(connection.direction_local);
+    let own: Vector3 = rotations[node].column(0).into();
+    if clamp.dot(&own) < 0.0 {
+        let mean = (clamp + own).try_normalize(1e-6);
+        let between = mean.unwrap_or_else(|| so3::any_normal(&clamp));
+        rotations[node] = so3::shortest_arc(&own, &between) * rotations[node];
+    }
 }
 
 /// Directions of the line at its nodes: between two chords their mean; at an end the chord, turned
