@@ -90,6 +90,11 @@ fn every_case_passes_under_beam_elements() {
 }
 
 #[test]
+fn every_case_passes_under_geometrically_exact_elements() {
+    check_formulation(FormulationKind::FemExact, &[]);
+}
+
+#[test]
 fn every_case_passes() {
     let suite = read_suite(&repository_suite()).unwrap();
     let results = in_parallel(&suite, None, |case| {

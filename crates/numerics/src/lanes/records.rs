@@ -38,11 +38,76 @@ record!(crate::Vector6, 6);
 record!(crate::Matrix3, 9);
 record!(crate::Block6, 36);
 
-/// Most numbers of a record that is gathered.
-const MOST_NUMBERS: usize = 9;
+/// Records that may be read beyond: consecutive ones, with room behind them, so that whole registers
+/// can be read.
+#[derive(Debug, Clone, Copy)]
+pub struct Run<'a>(&'a [f64]);
 
-/// A copy of the last records of a list.
-type Room = [f64; MOST_NUMBERS * MOST_LANES];
+/// Records behind those of the lanes that are read with them: eight numbers are up to three records.
+const BEYOND: usize = 3;
+
+/// A copy of the last records of a list, and more behind them.
+pub type LastRecords<I> = [I; MOST_LANES + BEYOND];
+
+impl<'a> Run<'a> {
+    /// The records from `first` on, one per lane; `room` is for those at the end of the list.
+    ///
+    /// # Panics
+    /// If there is no record `first`.
+    #[inline(always)]
+    pub fn new<T: Lane, I: Record>(
+        records: &'a [I],
+        first: usize,
+        room: &'a mut Option<LastRecords<I>>,
+    ) -> Run<'a> {
+        let wanted = T::COUNT + BEYOND;
+        match records.get(first..first + wanted) {
+            Some(records) => Run(I::numbers(records)),
+            None => Run(I::numbers(&last(records, first, room)[..wanted])),
+        }
+    }
+
+    /// The first `R` numbers of each record.
+    #[inline(always)]
+    pub fn gather<T: Lane, I: Record, const R: usize>(self, token: T::Token) -> [T; R] {
+        // One look at the bounds.
+        let numbers = &self.0[..I::LENGTH * (T::COUNT + BEYOND)];
+        let mut values = [T::splat(token, 0.0); R];
+        let mut start = 0;
+        while start < R {
+            // So that it ends with the record, if the record is long enough.
+            let from = start.min(R.saturating_sub(T::COUNT));
+            let mut square = [values[0]; MOST_LANES];
+            let mut lane = 0;
+            while lane < T::COUNT {
+                let at = I::LENGTH * lane + from;
+                square[lane] = T::read_some(token, &numbers[at..at + T::COUNT]);
+                lane += 1;
+            }
+            let square = T::transposed(square);
+            let mut k = start;
+            while k < R && k < from + T::COUNT {
+                values[k] = square[k - from];
+                k += 1;
+            }
+            start = from + T::COUNT;
+        }
+        values
+    }
+}
+
+/// The last records, the very last one repeated.
+#[cold]
+#[inline(never)]
+fn last<'a, I: Record>(
+    records: &[I],
+    first: usize,
+    room: &'a mut Option<LastRecords<I>>,
+) -> &'a LastRecords<I> {
+    room.insert(std::array::from_fn(|k| {
+        records[(first + k).min(records.len() - 1)]
+    }))
+}
 
 /// The first `R` numbers of consecutive records, one record per lane. Lanes beyond the last record
 /// hold the last one.
@@ -55,49 +120,8 @@ pub fn gather<T: Lane, I: Record, const R: usize>(
     records: &[I],
     first: usize,
 ) -> [T; R] {
-    const { assert!(I::LENGTH <= MOST_NUMBERS) }
-    let numbers = &I::numbers(records)[I::LENGTH * first..];
-    // Whole registers are read, up to some numbers beyond the last record.
-    let extent = I::LENGTH * (T::COUNT - 1) + I::LENGTH.max(T::COUNT);
     let mut room = None;
-    let numbers = match numbers.get(..extent) {
-        Some(numbers) => numbers,
-        None => &last(numbers, I::LENGTH, &mut room)[..extent],
-    };
-    let mut values = [T::splat(token, 0.0); R];
-    let mut start = 0;
-    while start < R {
-        // So that it ends with the record, if the record is long enough.
-        let from = start.min(R.saturating_sub(T::COUNT));
-        let mut square = [values[0]; MOST_LANES];
-        let mut lane = 0;
-        while lane < T::COUNT {
-            let at = I::LENGTH * lane + from;
-            square[lane] = T::read_some(token, &numbers[at..at + T::COUNT]);
-            lane += 1;
-        }
-        let square = T::transposed(square);
-        let mut k = start;
-        while k < R && k < from + T::COUNT {
-            values[k] = square[k - from];
-            k += 1;
-        }
-        start = from + T::COUNT;
-    }
-    values
-}
-
-/// The last records, of `length` numbers, and the very last one again behind them.
-#[cold]
-#[inline(never)]
-fn last<'a>(numbers: &[f64], length: usize, room: &'a mut Option<Room>) -> &'a Room {
-    let room = room.insert([0.0; MOST_NUMBERS * MOST_LANES]);
-    let there = numbers.len().min(room.len());
-    room[..there].copy_from_slice(&numbers[..there]);
-    for k in there..room.len() {
-        room[k] = room[k - length];
-    }
-    room
+    Run::new::<T, I>(records, first, &mut room).gather::<T, I, R>(token)
 }
 
 /// Adds what the first `count` lanes hold to consecutive records, from `first` on.
@@ -246,6 +270,7 @@ mod tests {
     and_back!(Vector3, 3);
     and_back!(Vector6, 6);
     and_back!(Matrix3, 9);
+    and_back!(Block6, 36);
 
     fn check<I: Record + Clone + PartialEq + std::fmt::Debug>(none: I)
     where
@@ -269,53 +294,6 @@ mod tests {
                     I::numbers_mut(&mut want.1)[range].copy_from_slice(own);
                 }
                 assert_eq!((sums, copies), want, "{count} records from {first} on");
-            }
-        }
-    }
-
-    /// Blocks that hold their own index in all entries, put and added.
-    struct Blocks {
-        blocks: Vec<Block6>,
-        first: usize,
-        count: usize,
-    }
-
-    impl Kernel for Blocks {
-        type Output = (usize, Vec<Block6>);
-
-        #[inline(always)]
-        fn run<T: Lane>(mut self, token: T::Token) -> Self::Output {
-            let counted = counted(36 * MOST_LANES, 1.0);
-            let mut values = [T::splat(token, 0.0); 36];
-            for (k, value) in values.iter_mut().enumerate() {
-                *value = T::read_some(token, &counted[MOST_LANES * k..]);
-            }
-            let count = self.count.min(T::COUNT);
-            put_records(&values, &mut self.blocks, self.first, count);
-            add_records(&values, &mut self.blocks, self.first, count);
-            (count, self.blocks)
-        }
-    }
-
-    #[test]
-    fn blocks_come_out_of_lanes() {
-        for (first, count) in [(0, 8), (1, 8), (2, 5), (9, 1)] {
-            let blocks = || Blocks {
-                blocks: vec![Block6([-1.0; 36]); 10],
-                first,
-                count,
-            };
-            for (count, got) in on_every_instruction_set(blocks) {
-                for (k, block) in got.iter().enumerate() {
-                    for (entry, number) in block.0.iter().enumerate() {
-                        let want = match k.checked_sub(first) {
-                            Some(lane) if lane < count => 2 * (MOST_LANES * entry + lane + 1),
-                            _ => 0,
-                        };
-                        let want = if want == 0 { -1.0 } else { want as f64 };
-                        assert_eq!(*number, want, "entry {entry} of block {k}");
-                    }
-                }
             }
         }
     }
@@ -352,5 +330,6 @@ mod tests {
         check(Vector3::zeros());
         check(Vector6::zeros());
         check(Matrix3::zeros());
+        check(Block6::ZERO);
     }
 }

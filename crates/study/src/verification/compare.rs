@@ -109,12 +109,12 @@ pub(super) fn verified_convergence(
             analysis: origin.analysis,
             load_case: origin.load_case.clone(),
             split: convergence.splits.get(k).copied().unwrap_or(1),
-            step_s: convergence.steps.get(k).copied(),
+            step_s: convergence.steps.get(k).copied().or(convergence.step),
         };
         values.push(results.value(&computation, origin)?.0);
-        sizes.push(match computation.step_s {
-            Some(step) => step,
-            None => results.element_count(&computation)? as f64,
+        sizes.push(match of_mesh {
+            true => results.element_count(&computation)? as f64,
+            false => convergence.steps[k],
         });
     }
     let reference = match convergence.reference {

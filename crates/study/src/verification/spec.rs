@@ -160,6 +160,8 @@ pub(super) struct Convergence {
     /// Constant steps [s], long to short; instead of `splits`.
     #[serde(default)]
     pub steps: Vec<f64>,
+    /// Constant step of a series of meshes [s]; absent: that of the model file.
+    pub step: Option<f64>,
     /// The reference; absent: the last of the series, which then has no error of its own.
     pub reference: Option<f64>,
     /// What errors are relative to; absent: the reference.
