@@ -166,6 +166,71 @@ impl<T: Lane> DragKernel<T> {
     }
 }
 
+/// Drag on points of lines, which does not know of their rotation: [`DragKernel`] without spin.
+#[derive(Debug, Clone, Copy)]
+pub struct PointDrag<T> {
+    /// For normal and axial flow.
+    coefficients: [T; 2],
+    axis: Vec3<T>,
+    along: T,
+    normal: Vec3<T>,
+    speed: T,
+}
+
+impl<T: Lane> PointDrag<T> {
+    /// With the coefficients for normal and axial flow.
+    #[inline(always)]
+    pub fn new(coefficients: [T; 2], axis: Vec3<T>, relative_velocity: Vec3<T>) -> Self {
+        let along = axis.dot(relative_velocity);
+        let normal = relative_velocity.minus(along, axis);
+        PointDrag {
+            coefficients,
+            axis,
+            along,
+            normal,
+            speed: normal.norm_squared().sqrt(),
+        }
+    }
+
+    /// Force on the structure.
+    ///
+    /// Source: docs/theory/hydrodynamics.md, eqs. (2) and (3).
+    #[inline(always)]
+    pub fn force(&self) -> Vec3<T> {
+        let [normal, axial] = self.coefficients;
+        (self.normal * (normal * self.speed)).plus(axial * self.along.abs() * self.along, self.axis)
+    }
+
+    /// Exact derivatives of [`Self::force`]: by the relative velocity, and by the axis, which stays
+    /// unit: nothing along it.
+    ///
+    /// Source: docs/theory/hydrodynamics.md, eqs. (5) and (6).
+    #[inline(always)]
+    pub fn derivatives(&self) -> [Mat3<T>; 2] {
+        let [coefficient, axial] = self.coefficients;
+        let (axis, zero) = (self.axis, self.speed.same(0.0));
+        let normal = coefficient * self.speed;
+        let sliding = axial * self.along.abs();
+        let steep = axis * (sliding + sliding - normal);
+        let moving = zero.less(self.speed);
+        let still = T::select(moving, self.speed, zero.same(1.0));
+        let inverse = T::select(moving, coefficient / still, zero);
+        let growing = self.normal * inverse;
+        let turned = (sliding - normal) * self.along;
+        [
+            steep
+                .outer(axis)
+                .plus_diagonal(normal)
+                .plus_outer(growing, self.normal),
+            // (I - axis axis^T) on the right.
+            (steep - growing * self.along)
+                .outer(self.normal)
+                .plus_diagonal(turned)
+                .plus_outer(axis * -turned, axis),
+        ]
+    }
+}
+
 impl DragKernel<f64> {
     fn of(c: &DragCoefficients, m: &DragMotion) -> Self {
         DragKernel::new(
@@ -278,6 +343,20 @@ mod tests {
             assert_relative_eq!(turned, by_turn(|d| d.force), epsilon = 1e-6);
             let turned = by_rotation(&t.moment_axis, &m.axis);
             assert_relative_eq!(turned, by_turn(|d| d.moment), epsilon = 1e-6);
+        }
+
+        #[test]
+        fn points_feel_what_bodies_do(a in vector(), u in vector()) {
+            prop_assume!(a.norm() > 0.1 && u.norm() > 0.05);
+            let axis = a.normalize();
+            let m = DragMotion { axis, relative_velocity: u, spin: Vector3::zeros() };
+            let point = PointDrag::new([C.normal, C.axial], (&axis).into(), (&u).into());
+            let t = drag_tangent(&C, &m);
+            let [by_velocity, by_axis] = point.derivatives().map(Matrix3::from);
+            let across = Matrix3::identity() - axis * axis.transpose();
+            assert_relative_eq!(Vector3::from(point.force()), drag(&C, &m).force, epsilon = 1e-12);
+            assert_relative_eq!(by_velocity, t.force_velocity, epsilon = 1e-12);
+            assert_relative_eq!(by_axis, t.force_axis * across, epsilon = 1e-12);
         }
 
         #[test]

@@ -14,7 +14,8 @@ mod linearised;
 mod loads;
 pub(crate) mod shape;
 mod solver;
-mod surroundings;
+pub(crate) mod surroundings;
+pub(crate) mod touch;
 mod view;
 
 #[cfg(test)]

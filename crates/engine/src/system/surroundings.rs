@@ -7,7 +7,7 @@ use super::frames::Sea;
 use crate::hydro::submergence::Submergence;
 
 /// What is felt of the sea at the heights of frames.
-pub(super) struct Surroundings<T> {
+pub(crate) struct Surroundings<T> {
     /// Velocity of the water [m/s] and its derivative by height [1/s].
     pub water: [Vec3<T>; 2],
     /// Share under water, its derivative by height, and by the slope of the axis (3).
@@ -19,7 +19,7 @@ pub(super) struct Surroundings<T> {
 impl<T: Lane> Surroundings<T> {
     /// For frames of some length and diameter [m], at a height [m], whose axes rise by `slope`.
     #[inline(always)]
-    pub(super) fn new(
+    pub(crate) fn new(
         token: T::Token,
         rows: &[Row; 2],
         sea: &Sea<'_>,

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use catenix_numerics::{BlockMatrix, Matrix3, TangentWeights, Vector3, Vector6};
+use catenix_numerics::{Block6, BlockMatrix, Matrix3, TangentWeights, Vector3, Vector6};
 
-use super::super::{Evaluation, NodeResult, Situation, clear_lines};
+use super::super::{Evaluation, NodeResult, Situation};
 use super::assembly::add_internal;
 use super::element::ends::{Blocks, End, Prediction};
 use super::element::field::{Carried, ElementBlocks, Field, POINT_COUNT};
@@ -12,6 +12,8 @@ use super::element::joint::{JointState, Support};
 use super::element::weight::Couples;
 use super::kernel::Kernel;
 use super::load::SeaLoad;
+use super::spans::Spans;
+use super::turning::Turning;
 use super::{EndJoint, Fem, Idle, Part, Seat, nodes};
 use crate::system::frames::{LoadPowers, frame_motion};
 use crate::system::{Carrier, EnergyTerms, Momentum, System};
@@ -20,37 +22,115 @@ use crate::system::{Carrier, EnergyTerms, Momentum, System};
 #[derive(Debug, Clone)]
 pub(super) struct FemEvaluation<K: Kernel> {
     pub(super) fem: Arc<Fem<K>>,
-    /// Elements (n_elements).
-    pub(super) states: Vec<K::State>,
-    /// What each element needs at its two frames: force and moment (n_elements x 2 x 6) [N, N m].
-    pub(super) forces: Vec<[Vector6; 2]>,
-    /// From the origin of what carries each end to the end (n_elements x 2 x 3) [m].
-    levers: Vec<[Vector3; 2]>,
+    /// The elements that are computed several at a time.
+    spans: Spans<K::Lanes>,
+    /// All others, one by one.
+    others: Vec<Other<K>>,
+    /// Inertia of sections.
+    turning: Turning,
+    /// Frames of lines whose blocks beside the diagonal no span writes.
+    bare_links: Vec<usize>,
+    /// What each element needs at its two frames: force and moment (2 x n_elements) [N, N m].
+    forces: [Vec<Vector6>; 2],
     /// Joints with their support's side (n_joints).
     pub(super) joints: Vec<(JointState, Support)>,
-    predicted: Vec<Prediction>,
     predicted_joints: Vec<Vector3>,
     has_prediction: bool,
 }
 
+/// An element that is computed by itself.
+#[derive(Debug, Clone)]
+struct Other<K: Kernel> {
+    /// Its index among all elements.
+    index: usize,
+    state: K::State,
+    /// From the origin of what carries each end to the end (2 x 3) [m].
+    levers: [Vector3; 2],
+    predicted: Prediction,
+}
+
 impl<K: Kernel> FemEvaluation<K> {
     pub(super) fn new(fem: Arc<Fem<K>>, at: &Situation<'_>) -> FemEvaluation<K> {
-        let parts = fem.parts.iter().zip(&fem.kernels);
+        let (spans, others) = Spans::among(&fem);
+        let other = |index: usize| {
+            let carried = fem.parts[index].carried(at);
+            Other {
+                index,
+                state: state(&fem.kernels[index], &carried),
+                levers: [carried[0].lever, carried[1].lever],
+                predicted: Prediction::default(),
+            }
+        };
+        let frames = at.system.body_frame(0);
+        let mut bare = vec![true; frames];
+        for frame in spans.first_frames() {
+            bare[frame] = false;
+        }
         FemEvaluation {
-            states: parts
-                .map(|(part, kernel)| state(kernel, &part.carried(at)))
-                .collect(),
-            forces: vec![[Vector6::zeros(); 2]; fem.parts.len()],
-            levers: vec![[Vector3::zeros(); 2]; fem.parts.len()],
+            spans,
+            turning: Turning::new(&fem.rotary, frames),
+            bare_links: (0..frames).filter(|&k| bare[k]).collect(),
+            others: others.into_iter().map(other).collect(),
+            forces: [0, 1].map(|_| vec![Vector6::zeros(); fem.parts.len()]),
             joints: fem
                 .joints
                 .iter()
                 .map(|joint| evaluate_joint(joint, at))
                 .collect(),
-            predicted: vec![Prediction::default(); fem.parts.len()],
             predicted_joints: vec![Vector3::zeros(); fem.joints.len()],
             has_prediction: false,
             fem,
+        }
+    }
+
+    /// What an element needs at one of its frames [N, N m].
+    pub(super) fn force(&self, element: usize, end: usize) -> &Vector6 {
+        &self.forces[end][element]
+    }
+
+    /// Residual and, with `weights`, matrix of the elements that go one by one.
+    fn assemble_others(
+        &mut self,
+        at: &Situation<'_>,
+        weights: Option<&TangentWeights<'_>>,
+        residual: &mut [Vector6],
+        matrix: &mut BlockMatrix,
+    ) {
+        let fem = &*self.fem;
+        for other in &mut self.others {
+            let (part, kernel) = (&fem.parts[other.index], &fem.kernels[other.index]);
+            let carried = part.carried(at);
+            let state = state(kernel, &carried);
+            let own = weights.map(|weights| part.weights(weights));
+            let load = SeaLoad {
+                spread: &part.spread,
+                sea: &at.sea,
+            };
+            let mut element = ElementBlocks::zeros();
+            let ends = [&carried[0], &carried[1]];
+            let uniform = part.spread.uniform();
+            let field = field(part, &carried);
+            let mass = part.spread.mass;
+            field.add(ends, mass, &uniform, &load, own.as_ref(), &mut element);
+            let couples = Couples::new([&ends[0].end, &ends[1].end], part.length, &uniform);
+            let prediction = self.has_prediction.then_some(&other.predicted);
+            let tangent = own.as_ref().map(|weights| {
+                let mut tangent = kernel.tangent(&state, prediction);
+                add_blocks(&mut tangent.configuration, &couples.tangent());
+                (tangent, weights)
+            });
+            let tangent = tangent
+                .as_ref()
+                .map(|(tangent, weights)| (tangent, *weights));
+            let forces = kernel.forces(&state).plus(&couples.forces());
+            add_internal(&forces, tangent, &carried, &mut element);
+            let into = weights.is_some().then_some(&mut *matrix);
+            part.scatter(&at.system.topology, &element, residual, into);
+            other.state = state;
+            other.levers = [carried[0].lever, carried[1].lever];
+            for (end, force) in element.force.into_iter().enumerate() {
+                self.forces[end][other.index] = force;
+            }
         }
     }
 }
@@ -105,44 +185,18 @@ impl<K: Kernel> Evaluation for FemEvaluation<K> {
         residual: &mut [Vector6],
         matrix: &mut BlockMatrix,
     ) {
-        clear_lines(at.system, weights.is_some(), residual, matrix);
-        let fem = &*self.fem;
+        self.turning.put(at, weights, residual, matrix);
+        if weights.is_some() {
+            for &k in &self.bare_links {
+                matrix.upper[k] = Block6::ZERO;
+                matrix.lower[k] = Block6::ZERO;
+            }
+        }
         let topology = &at.system.topology;
-        for (index, (part, kernel)) in fem.parts.iter().zip(&fem.kernels).enumerate() {
-            let carried = part.carried(at);
-            let state = state(kernel, &carried);
-            let own = weights.map(|weights| part.weights(weights));
-            let load = SeaLoad {
-                spread: &part.spread,
-                sea: &at.sea,
-            };
-            let mut element = ElementBlocks::zeros();
-            let ends = [&carried[0], &carried[1]];
-            let uniform = part.spread.uniform();
-            let field = field(part, &carried);
-            let mass = part.spread.mass;
-            field.add(ends, mass, &uniform, &load, own.as_ref(), &mut element);
-            let couples = Couples::new([&ends[0].end, &ends[1].end], part.length, &uniform);
-            let prediction = self.has_prediction.then(|| &self.predicted[index]);
-            let tangent = own.as_ref().map(|weights| {
-                let mut tangent = kernel.tangent(&state, prediction);
-                add_blocks(&mut tangent.configuration, &couples.tangent());
-                (tangent, weights)
-            });
-            let tangent = tangent
-                .as_ref()
-                .map(|(tangent, weights)| (tangent, *weights));
-            let forces = kernel.forces(&state).plus(&couples.forces());
-            add_internal(&forces, tangent, &carried, &mut element);
-            let into = weights.is_some().then_some(&mut *matrix);
-            part.scatter(topology, &element, residual, into);
-            self.states[index] = state;
-            self.forces[index] = element.force;
-            self.levers[index] = [carried[0].lever, carried[1].lever];
-        }
-        for rotary in &fem.rotary {
-            rotary.add(at, weights, residual, matrix);
-        }
+        self.spans
+            .assemble(at, weights, &mut self.forces, residual, matrix);
+        self.assemble_others(at, weights, residual, matrix);
+        let fem = &*self.fem;
         for (index, joint) in fem.joints.iter().enumerate() {
             let (state, side) = evaluate_joint(joint, at);
             let blocks = weights.map(|_| {
@@ -166,16 +220,16 @@ impl<K: Kernel> Evaluation for FemEvaluation<K> {
 
     fn begin(&mut self) {
         self.has_prediction = false;
+        self.spans.begin();
     }
 
     fn moving(&mut self, _: &System, increment: &[Vector6]) {
         let fem = &*self.fem;
-        let elements = fem.parts.iter().zip(&fem.kernels);
-        let states = self.states.iter().zip(&self.levers);
-        let all = self.predicted.iter_mut().zip(elements.zip(states));
-        for (prediction, ((part, kernel), (state, levers))) in all {
-            let moves = [0, 1].map(|k: usize| part.seats[k].moved(&levers[k], increment));
-            *prediction = kernel.predicted(state, &moves);
+        self.spans.moving(increment);
+        for other in &mut self.others {
+            let (part, kernel) = (&fem.parts[other.index], &fem.kernels[other.index]);
+            let moves = [0, 1].map(|k: usize| part.seats[k].moved(&other.levers[k], increment));
+            other.predicted = kernel.predicted(&other.state, &moves);
         }
         let joints = fem.joints.iter().zip(&self.joints);
         for (prediction, (joint, (state, side))) in self.predicted_joints.iter_mut().zip(joints) {
@@ -202,33 +256,23 @@ impl<K: Kernel> Evaluation for FemEvaluation<K> {
 
     fn add_energy(&self, at: &Situation<'_>, terms: &mut EnergyTerms) {
         let fem = &*self.fem;
-        for (index, (part, kernel)) in fem.parts.iter().zip(&fem.kernels).enumerate() {
-            let carried = part.carried(at);
-            let field = field(part, &carried);
-            let load = SeaLoad {
-                spread: &part.spread,
-                sea: &at.sea,
-            };
-            let ends = [&carried[0].end, &carried[1].end];
-            let mut potential = weight_energy(ends, part);
-            let mut powers = LoadPowers {
-                buoyancy: buoyancy_power(ends, part),
-                ..LoadPowers::default()
-            };
-            for point in 0..POINT_COUNT {
-                let station = field.station(point);
-                let (contact, own) = load.energy(&station);
-                potential += contact * station.length;
-                powers.drag += own.drag * station.length;
-                powers.added_mass += own.added_mass * station.length;
-                powers.buoyancy += own.buoyancy * station.length;
-                powers.seabed_damping += own.seabed_damping * station.length;
+        let [elastic, damping] = self.spans.elastic_energy();
+        terms.elastic += elastic;
+        terms.structural_damping += damping;
+        if at.sea.seabed.is_some() {
+            for index in self.spans.elements() {
+                terms.add(spread_energy(&fem.parts[index], at));
             }
-            terms.add((field.kinetic_energy(part.spread.mass), potential, powers));
-            terms.elastic += kernel.energy(&self.states[index]);
-            terms.structural_damping += K::damping_power(&self.states[index]);
+        } else {
+            terms.add(self.spans.energies(at));
+        }
+        for other in &self.others {
+            let (part, kernel) = (&fem.parts[other.index], &fem.kernels[other.index]);
+            terms.add(spread_energy(part, at));
+            terms.elastic += kernel.energy(&other.state);
+            terms.structural_damping += K::damping_power(&other.state);
             for (k, seat) in part.seats.iter().enumerate() {
-                terms.moved_ends += moved_end_power(seat, &self.forces[index][k], at);
+                terms.moved_ends += moved_end_power(seat, self.force(other.index, k), at);
             }
         }
         for rotary in &fem.rotary {
@@ -344,6 +388,32 @@ impl<K: Kernel> Evaluation for FemEvaluation<K> {
             })
             .collect()
     }
+}
+
+/// Kinetic and potential energy of what is spread over an element [J], and the powers of its loads.
+fn spread_energy(part: &Part, at: &Situation<'_>) -> (f64, f64, LoadPowers) {
+    let carried = part.carried(at);
+    let field = field(part, &carried);
+    let load = SeaLoad {
+        spread: &part.spread,
+        sea: &at.sea,
+    };
+    let ends = [&carried[0].end, &carried[1].end];
+    let mut potential = weight_energy(ends, part);
+    let mut powers = LoadPowers {
+        buoyancy: buoyancy_power(ends, part),
+        ..LoadPowers::default()
+    };
+    for point in 0..POINT_COUNT {
+        let station = field.station(point);
+        let (contact, own) = load.energy(&station);
+        potential += contact * station.length;
+        powers.drag += own.drag * station.length;
+        powers.added_mass += own.added_mass * station.length;
+        powers.buoyancy += own.buoyancy * station.length;
+        powers.seabed_damping += own.seabed_damping * station.length;
+    }
+    (field.kinetic_energy(part.spread.mass), potential, powers)
 }
 
 /// Potential of the weight of an element [J].

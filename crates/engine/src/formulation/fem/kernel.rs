@@ -3,16 +3,22 @@
 use std::fmt::Debug;
 
 use catenix_numerics::Vector3;
+use catenix_numerics::lanes::{Lane, Row, Vec3};
 
 use super::element::corotational::{Corotational, CorotationalState};
 use super::element::ends::{ElementForces, ElementTangent, End, Prediction};
 use super::element::exact::{Exact, ExactState};
+use super::element::lanes::corotational::CorotationalLanes;
+use super::element::lanes::{Assembled, Ends, Weights};
 use super::element::section::ElementSection;
 
 /// A beam element between two ends.
 pub(super) trait Kernel: Debug + Clone + Send + Sync + 'static {
     /// The element at one configuration.
     type State: Debug + Clone + Copy + Send;
+
+    /// Elements that are computed side by side.
+    type Lanes: Lanes;
 
     fn new(section: ElementSection) -> Self;
 
@@ -32,12 +38,92 @@ pub(super) trait Kernel: Debug + Clone + Send + Sync + 'static {
     fn energy(&self, state: &Self::State) -> f64;
 
     fn damping_power(state: &Self::State) -> f64;
+
+    /// Whether the element is of the kind that can be computed beside others.
+    fn fits_in_lanes(&self) -> bool;
+
+    /// Elements of that kind side by side; `None` where there is no such kernel.
+    fn side_by_side(elements: &[&Self]) -> Option<Self::Lanes>;
+}
+
+/// Beam elements side by side, one per lane.
+pub(super) trait Lanes: Debug + Clone + Send + 'static {
+    /// Adds their forces and those of a vertical load per length [N/m], and with `weights` the
+    /// derivatives; see [`CorotationalLanes::add`].
+    fn add<T: Lane>(
+        &mut self,
+        token: T::Token,
+        ends: &[Ends<T>; 2],
+        load: T,
+        predicts: bool,
+        weights: Option<&Weights<T>>,
+        out: &mut Assembled<T>,
+    );
+
+    /// Keeps the deformation after a small move of both ends: translations and rotations.
+    fn predict<T: Lane>(&mut self, token: T::Token, moves: [[Vec3<T>; 2]; 2]);
+
+    /// Elastic energy [J] and power of the damping [W] at the last evaluation, one row each.
+    fn energy(&self) -> &[Row; 2];
+}
+
+impl Lanes for CorotationalLanes {
+    #[inline(always)]
+    fn add<T: Lane>(
+        &mut self,
+        token: T::Token,
+        ends: &[Ends<T>; 2],
+        load: T,
+        predicts: bool,
+        weights: Option<&Weights<T>>,
+        out: &mut Assembled<T>,
+    ) {
+        self.add(token, ends, load, predicts, weights, out);
+    }
+
+    #[inline(always)]
+    fn predict<T: Lane>(&mut self, token: T::Token, moves: [[Vec3<T>; 2]; 2]) {
+        self.predict(token, moves);
+    }
+
+    fn energy(&self) -> &[Row; 2] {
+        self.energy()
+    }
+}
+
+/// No elements: what the geometrically exact ones are computed with side by side.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum OneByOne {}
+
+impl Lanes for OneByOne {
+    #[inline(always)]
+    fn add<T: Lane>(
+        &mut self,
+        _: T::Token,
+        _: &[Ends<T>; 2],
+        _: T,
+        _: bool,
+        _: Option<&Weights<T>>,
+        _: &mut Assembled<T>,
+    ) {
+        match *self {}
+    }
+
+    #[inline(always)]
+    fn predict<T: Lane>(&mut self, _: T::Token, _: [[Vec3<T>; 2]; 2]) {
+        match *self {}
+    }
+
+    fn energy(&self) -> &[Row; 2] {
+        match *self {}
+    }
 }
 
 macro_rules! kernel {
-    ($element:ty, $state:ty) => {
+    ($element:ty, $state:ty, $lanes:ty, $fits:expr, $many:expr) => {
         impl Kernel for $element {
             type State = $state;
+            type Lanes = $lanes;
 
             fn new(section: ElementSection) -> Self {
                 <$element>::new(section)
@@ -86,9 +172,29 @@ macro_rules! kernel {
             fn damping_power(state: &Self::State) -> f64 {
                 state.damping_power()
             }
+
+            fn fits_in_lanes(&self) -> bool {
+                $fits(self)
+            }
+
+            fn side_by_side(elements: &[&Self]) -> Option<$lanes> {
+                $many(elements)
+            }
         }
     };
 }
 
-kernel!(Corotational, CorotationalState);
-kernel!(Exact, ExactState);
+kernel!(
+    Corotational,
+    CorotationalState,
+    CorotationalLanes,
+    Corotational::is_linear,
+    |elements: &[&Corotational]| Some(CorotationalLanes::new(elements))
+);
+kernel!(
+    Exact,
+    ExactState,
+    OneByOne,
+    |_: &Exact| false,
+    |_: &[&Exact]| None
+);

@@ -21,12 +21,12 @@ pub(super) struct Spread {
     /// Buoyancy under water [N/m].
     pub buoyancy: f64,
     /// Drag under water, force per length.
-    drag: DragCoefficients,
+    pub drag: DragCoefficients,
     /// Added mass across and along the line, under water [kg/m].
-    added_normal: f64,
-    added_axial: f64,
+    pub added_normal: f64,
+    pub added_axial: f64,
     /// Outer diameter [m].
-    diameter: f64,
+    pub diameter: f64,
 }
 
 impl Spread {

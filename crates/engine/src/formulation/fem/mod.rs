@@ -12,9 +12,14 @@ pub mod element;
 mod ends;
 mod evaluation;
 mod kernel;
+#[cfg(test)]
+mod lanes_tests;
 mod load;
+mod load_lanes;
 mod nodes;
 mod shape;
+mod spans;
+mod turning;
 
 use std::sync::Arc;
 

@@ -30,7 +30,7 @@ impl Stress {
         end: usize,
         carried: &[Carried; 2],
     ) -> Stress {
-        let needed = &own.forces[element][end];
+        let needed = own.force(element, end);
         let sign = if end == 0 { -1.0 } else { 1.0 };
         let force: Vector3 = needed.fixed_rows::<3>(0).into();
         let about_frame: Vector3 = needed.fixed_rows::<3>(3).into();
@@ -43,7 +43,8 @@ impl Stress {
                 ..c.end
             });
             let elastic = kernel.forces(&kernel.state(&still)).moment[end];
-            kernel.forces(&own.states[element]).moment[end] - elastic
+            let moving = carried.each_ref().map(|c| c.end);
+            kernel.forces(&kernel.state(&moving)).moment[end] - elastic
         } else {
             Vector3::zeros()
         };
@@ -189,7 +190,7 @@ pub(super) fn end_load<K: Kernel>(
         let mut sum = load.fixed_rows_mut::<3>(3);
         sum += moment;
     };
-    let needed = &own.forces[element][end];
+    let needed = own.force(element, end);
     let force: Vector3 = needed.fixed_rows::<3>(0).into();
     let about_frame: Vector3 = needed.fixed_rows::<3>(3).into();
     match &part.seats[end] {

@@ -21,15 +21,15 @@ use so3::hat;
 pub struct Corotational {
     section: ElementSection,
     /// Stiffness against the mean of the two end rotations, local y and z: 12 EI / l (2) [N m].
-    alike: [f64; 2],
+    pub(super) alike: [f64; 2],
     /// Stiffness against half of their difference, local y and z: 4 EI / l (2) [N m].
-    apart: [f64; 2],
+    pub(super) apart: [f64; 2],
     /// Shortening by the mean of the end rotations, squared, per length, local y and z (2) [-].
-    bow: [f64; 2],
+    pub(super) bow: [f64; 2],
     /// Turns of the two ends without stress (2 x 3) [rad].
-    rest: [Vector3; 2],
+    pub(super) rest: [Vector3; 2],
     /// Strain that the cubic shortening makes of the shape without stress [-].
-    rest_strain: f64,
+    pub(super) rest_strain: f64,
 }
 
 /// An element at one configuration.
@@ -97,6 +97,11 @@ impl Corotational {
     /// Its section.
     pub fn section(&self) -> &ElementSection {
         &self.section
+    }
+
+    /// Whether it can be computed side by side with others: its laws are linear.
+    pub fn is_linear(&self) -> bool {
+        self.section.laws.is_none()
     }
 
     /// Largest stiffness against a displacement, times the length [N]: of extension, or of the ends

@@ -17,7 +17,7 @@ use super::ends::End;
 
 /// Hermite's cubics integrated two by two over the unit length, times 420: position and slope of
 /// the first end, then of the second.
-const CUBICS: [[f64; 4]; 4] = [
+pub(super) const CUBICS: [[f64; 4]; 4] = [
     [156.0, 22.0, 54.0, -13.0],
     [22.0, 4.0, 13.0, -3.0],
     [54.0, 13.0, 156.0, -22.0],
@@ -26,7 +26,7 @@ const CUBICS: [[f64; 4]; 4] = [
 
 /// Places and weights of the points at which loads are taken, on the unit length: Gauss, exact for
 /// polynomials of degree 5.
-const POINTS: [[f64; 2]; 3] = [
+pub(in crate::formulation::fem) const POINTS: [[f64; 2]; 3] = [
     [0.112_701_665_379_258_31, 5.0 / 18.0],
     [0.5, 8.0 / 18.0],
     [0.887_298_334_620_741_7, 5.0 / 18.0],
@@ -54,7 +54,7 @@ const fn cubics(x: f64) -> [[f64; 4]; 2] {
     ]
 }
 
-const AT_POINTS: [[[f64; 4]; 2]; POINT_COUNT] = [
+pub(super) const AT_POINTS: [[[f64; 4]; 2]; POINT_COUNT] = [
     cubics(POINTS[0][0]),
     cubics(POINTS[1][0]),
     cubics(POINTS[2][0]),

@@ -12,6 +12,7 @@ pub mod ends;
 pub mod exact;
 pub mod field;
 pub mod joint;
+pub mod lanes;
 mod reach;
 pub mod section;
 mod triad;
