@@ -13,9 +13,9 @@ pub(super) struct Band {
     /// By the own node (n_nodes).
     pub own: Vec<Matrix3>,
     /// Of node k by node k + 1 (n_nodes).
-    next: Vec<Matrix3>,
+    pub next: Vec<Matrix3>,
     /// Of node k + 1 by node k (n_nodes).
-    previous: Vec<Matrix3>,
+    pub previous: Vec<Matrix3>,
     /// Of node k by node k + 2 (n_nodes).
     second: Vec<Matrix3>,
     /// Of the outermost springs by the rate of their vector (2).

@@ -11,6 +11,7 @@ use super::element::bend::BendState;
 use super::element::guide::GuideState;
 use super::element::spring::SpringState;
 use super::ends::TieState;
+use super::load_lanes::{InnerNodes, LineMotion};
 use super::loads::{NodeLoad, NodeMotion};
 use super::{Lumped, LumpedLine, limits, nodes};
 use crate::system::{Carrier, EnergyTerms, Momentum, System};
@@ -35,6 +36,8 @@ pub(super) struct LumpedEvaluation {
     /// Extension that the linear solution predicts for each element [m].
     predicted: Vec<f64>,
     has_prediction: bool,
+    /// Per line: its nodes between the ends (n_lines).
+    inner: Vec<InnerNodes>,
     /// Room for the matrix of one line.
     pub(super) band: Band,
 }
@@ -56,6 +59,11 @@ impl LumpedEvaluation {
             arms: vec![Default::default(); lumped.lines.len()],
             predicted: vec![0.0; elements],
             has_prediction: false,
+            inner: lumped
+                .lines
+                .iter()
+                .map(|line| InnerNodes::of(&lumped.nodes[line.nodes.clone()]))
+                .collect(),
             band: Band::with_nodes(longest.unwrap_or(0) + 1),
             lumped,
         };
@@ -158,19 +166,46 @@ impl LumpedEvaluation {
         }
     }
 
-    /// Matrix of one line, its nodes' loads included.
-    fn fill_band(
+    /// Adds inertia and loads of the nodes of one line to their forces and, with `weights`, their
+    /// derivatives to its matrix.
+    fn load_nodes(
         &mut self,
         at: &Situation<'_>,
         line: &LumpedLine,
         index: usize,
-        weights: &TangentWeights<'_>,
+        weights: Option<&TangentWeights<'_>>,
     ) {
+        let lumped = Arc::clone(&self.lumped);
+        let (nodes, n) = (line.nodes.clone(), line.elements());
+        let motion = LineMotion {
+            position: &self.position[nodes.clone()],
+            velocity: &self.velocity[nodes.clone()],
+            acceleration: &self.acceleration[nodes.clone()],
+        };
+        let force = &mut self.force[nodes.clone()];
+        self.inner[index].add(&at.sea, &motion, weights, force, &mut self.band);
+        for end in 0..2 {
+            let node = line.end_node(end);
+            let (own, motion) = (&lumped.nodes[nodes.start + node], self.motion(line, node));
+            let load = NodeLoad::new(own, &motion, &at.sea);
+            self.force[nodes.start + node] += load.force(own, &motion);
+            let Some(weights) = weights else { continue };
+            let tangent = load.tangent(own, &motion);
+            let total = tangent.position
+                + tangent.velocity * weights.velocity
+                + tangent.acceleration * weights.acceleration;
+            self.band.add_node(node, n, &total, &tangent.chord);
+            self.band.end_velocity[end] = tangent.velocity;
+            self.band.end_acceleration[end] = tangent.acceleration;
+        }
+    }
+
+    /// Adds springs, bending and ends to the matrix of one line.
+    fn fill_band(&mut self, line: &LumpedLine, index: usize, weights: &TangentWeights<'_>) {
         let lumped = Arc::clone(&self.lumped);
         let (first, spring) = (line.nodes.start, line.springs.start);
         let n = line.elements();
         let mut band = std::mem::take(&mut self.band);
-        band.clear(n + 1);
         for e in 0..n {
             let (a, b) = (first + e, first + e + 1);
             let rate = self.velocity[b] - self.velocity[a];
@@ -184,21 +219,6 @@ impl LumpedEvaluation {
                 let before = &self.springs[spring + node - 1].segment;
                 let after = &self.springs[spring + node].segment;
                 band.add_bend(node, &self.bends[first + node].tangent(before, after));
-            }
-        }
-        for node in 0..=n {
-            let motion = self.motion(line, node);
-            let own = &lumped.nodes[first + node];
-            let tangent = NodeLoad::new(own, &motion, &at.sea).tangent(own, &motion);
-            let total = tangent.position
-                + tangent.velocity * weights.velocity
-                + tangent.acceleration * weights.acceleration;
-            band.add_node(node, n, &total, &tangent.chord);
-            for end in 0..2 {
-                if node == line.end_node(end) {
-                    band.end_velocity[end] = tangent.velocity;
-                    band.end_acceleration[end] = tangent.acceleration;
-                }
             }
         }
         for end in 0..2 {
@@ -245,18 +265,19 @@ impl Evaluation for LumpedEvaluation {
         self.evaluate(at);
         let lumped = Arc::clone(&self.lumped);
         for (index, line) in lumped.lines.iter().enumerate() {
+            if weights.is_some() {
+                self.band.clear(line.elements() + 1);
+            }
+            self.load_nodes(at, line, index, weights);
             for node in 0..=line.elements() {
-                let motion = self.motion(line, node);
                 let k = line.nodes.start + node;
-                let own = &lumped.nodes[k];
-                self.force[k] += NodeLoad::new(own, &motion, &at.sea).force(own, &motion);
                 if let Some((block, half)) = line.slot(node) {
                     let mut rows = residual[block].fixed_rows_mut::<3>(3 * half);
                     rows += self.force[k];
                 }
             }
             if let Some(weights) = weights {
-                self.fill_band(at, line, index, weights);
+                self.fill_band(line, index, weights);
                 self.band.scatter(line, lumped.idle_stiffness, matrix);
             }
             for end in 0..2 {

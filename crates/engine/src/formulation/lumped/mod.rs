@@ -8,6 +8,7 @@ pub mod element;
 mod ends;
 mod evaluation;
 mod limits;
+mod load_lanes;
 mod loads;
 mod nodes;
 mod refusals;
@@ -298,28 +299,29 @@ impl LumpedLine {
         layout: &'s LineLayout,
     ) -> impl Iterator<Item = Frame> + 's {
         let own = &nodes[self.nodes.clone()];
-        (0..self.arrangement.block_count()).map(move |block| {
-            let in_block = |node: &usize| match self.arrangement.slot(*node) {
-                Some(slot) => slot.block == block,
-                None => {
-                    block
-                        == if *node == 0 {
-                            0
-                        } else {
-                            self.arrangement.block_count() - 1
-                        }
-                }
-            };
-            let members: Vec<usize> = (0..own.len()).filter(in_block).collect();
-            let sum = |value: fn(&NodeProperties) -> f64| -> f64 {
-                members.iter().map(|&node| value(&own[node])).sum()
-            };
+        let blocks = self.arrangement.block_count();
+        let block_of = move |node: usize| match self.arrangement.slot(node) {
+            Some(slot) => slot.block,
+            None if node == 0 => 0,
+            None => blocks - 1,
+        };
+        let mut first = 0;
+        (0..blocks).map(move |block| {
+            // Nodes stand in the order of their blocks.
+            let mut last = first;
+            while last < own.len() && block_of(last) == block {
+                last += 1;
+            }
+            let members = &own[first..last];
+            let sum =
+                |value: fn(&NodeProperties) -> f64| -> f64 { members.iter().map(value).sum() };
             let mass = sum(|node| node.mass);
-            let length = layout.length(members[0].min(layout.element_count - 1));
+            let length = layout.length(first.min(layout.element_count - 1));
+            first = last;
             Frame {
                 axis: Vector3::x(),
                 length,
-                diameter: own[members[0]].diameter,
+                diameter: members[0].diameter,
                 mass,
                 // Of no use to points; as of a rod with its mass at its ends.
                 inertia: Vector3::repeat(0.25 * mass * length * length),
