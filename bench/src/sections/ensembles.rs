@@ -145,7 +145,9 @@ fn markdown(data: &Value) -> Result<String, String> {
     );
     Ok(format!(
         "{} load cases of the sea trial ({} elements; other current headings and speeds), {} s each in\n\
-         steps of {STEP} s, with `catenix run`: statics, motion and store, whole process.\n\n{}",
+         steps of {STEP} s, with `catenix run`: statics, motion and store, whole process.\n\n{}\n\
+         Cases are computed one by one on each thread; [why lanes over cases do not pay]\
+         (../docs/theory/speed.md#ensembles), and what was tried, stands with the kernels above.",
         d.cases,
         d.elements,
         grouped(d.simulated_s),

@@ -1,4 +1,4 @@
-//! Kernels alone, measured with criterion in `bench/benches/kernels.rs`.
+//! Kernels alone, measured with criterion in `bench/benches/kernels`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -6,6 +6,8 @@
 // A benchmark that cannot be set up may say so loudly.
 #![allow(clippy::expect_used, clippy::unwrap_used, missing_docs)]
 
+mod side_by_side;
+
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -19,13 +21,16 @@ use catenix_engine::system::SystemSolver;
 use catenix_engine::{System, solve_statics};
 use catenix_model::file::read_study;
 use catenix_model::{Model, NaturalShape};
+use catenix_numerics::lanes::MOST_LANES;
 use catenix_numerics::{
-    Block6, BlockMatrix, Chain, Configuration, Factorisation, ImplicitSystem, Matrix3, MotionState,
-    TangentWeights, Topology, Vector3, Vector6, so3,
+    Block6, BlockMatrix, Chain, Configuration, Elimination, Factorisation, ImplicitSystem, Matrix3,
+    MotionState, TangentWeights, Topology, Vector3, Vector6, so3,
 };
 use cpu_time::ThreadTime;
 use criterion::measurement::{Measurement, ValueFormatter, WallTime};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+
+use side_by_side::SideBySide;
 
 /// Connectors or elements in one pass of a small kernel: enough to hide the loop around it.
 const BATCH: usize = 256;
@@ -270,19 +275,43 @@ fn chains(criterion: &mut Bench) {
     let mut group = criterion.benchmark_group("chain");
     for frames in [290, 10_000] {
         let (topology, matrix, right) = chain_matrix(frames);
-        let mut factors = Factorisation::new(&topology);
         group.throughput(Throughput::Elements(frames as u64));
-        group.bench_function(format!("factorise {frames} blocks"), |bencher| {
-            bencher.iter(|| factors.factorise(&topology, black_box(&matrix)).unwrap());
-        });
+        let mut exchanged = Factorisation::new(&topology);
+        group.bench_function(
+            format!("factorise {frames} blocks, rows exchanged"),
+            |bencher| {
+                bencher.iter(|| exchanged.factorise(&topology, black_box(&matrix)).unwrap());
+            },
+        );
+        let mut factors = Elimination::new(&topology);
         let mut x = right.clone();
-        group.bench_function(format!("solve {frames} blocks"), |bencher| {
+        group.bench_function(format!("factorise and solve {frames} blocks"), |bencher| {
+            bencher.iter(|| {
+                let matrix = black_box(&matrix);
+                factors
+                    .factorise_and_solve(&topology, matrix, &right, &mut x)
+                    .unwrap();
+            });
+        });
+        group.bench_function(format!("solve {frames} blocks again"), |bencher| {
             bencher.iter(|| {
                 x.copy_from_slice(&right);
                 factors.solve(&topology, black_box(&mut x));
             });
         });
     }
+    let frames = 290;
+    let (_, matrix, right) = chain_matrix(frames);
+    let mut chains = SideBySide::new(&matrix, &right);
+    chains.eliminate();
+    assert!(chains.error() < 1e-12, "the chains are not solved");
+    group.throughput(Throughput::Elements((MOST_LANES * frames) as u64));
+    group.bench_function(
+        format!("factorise and solve {MOST_LANES} x {frames} blocks in lanes"),
+        |bencher| {
+            bencher.iter(|| black_box(&mut chains).eliminate());
+        },
+    );
     group.finish();
 }
 
