@@ -127,30 +127,62 @@ pub(crate) fn time_tolerance(duration_s: f64) -> f64 {
     1e-9 * duration_s.max(1.0)
 }
 
-/// The extreme inside the stretch between the second and the third of four samples: NaN where the
-/// curve has none there.
+/// The stretch between the second and the third of four samples, where many values may have an
+/// extreme of the curve through them.
 ///
 /// The two parabolas through three of the samples must agree about the sense of the bend; its
 /// amount is their harmonic mean, which is close to the smaller one where they differ. So a kink
 /// that only one of them sees makes no extreme.
 ///
-/// `times` and `values`: of the four samples, by time.
-///
 /// Source: docs/theory/results.md, eq. (13).
-#[inline]
-pub(crate) fn inner_extreme(times: &[f64; 4], values: &[f64; 4]) -> f64 {
-    let slope = |k: usize| (values[k + 1] - values[k]) / (times[k + 1] - times[k]);
-    let (before, slope, after) = (slope(0), slope(1), slope(2));
-    let left = (slope - before) / (times[2] - times[0]);
-    let right = (after - slope) / (times[3] - times[1]);
-    let agreement = left * right;
-    let bend = 2.0 * agreement / (left + right);
-    let step = times[2] - times[1];
-    // Outside the stretch, at a straight line, or where a value is no number.
-    if !(agreement > 0.0 && slope.abs() < bend.abs() * step) {
-        return f64::NAN;
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stretch {
+    /// Length [s].
+    step: f64,
+    /// One over the time between neighbours, and between the first and last three [1/s].
+    per_step: [f64; 3],
+    per_two: [f64; 2],
+}
+
+impl Stretch {
+    /// From the times of the four samples [s].
+    pub(crate) fn new(times: &[f64; 4]) -> Stretch {
+        let per = |from: usize, to: usize| 1.0 / (times[to] - times[from]);
+        Stretch {
+            step: times[2] - times[1],
+            per_step: [per(0, 1), per(1, 2), per(2, 3)],
+            per_two: [per(0, 2), per(1, 3)],
+        }
     }
-    0.5 * (values[1] + values[2]) - 0.25 * (bend * step * step + slope * slope / bend)
+
+    /// Slope along the stretch, and half the second derivatives of both parabolas.
+    #[inline(always)]
+    fn shape(&self, values: [f64; 4]) -> (f64, f64, f64) {
+        let [before, slope, after] = [
+            (values[1] - values[0]) * self.per_step[0],
+            (values[2] - values[1]) * self.per_step[1],
+            (values[3] - values[2]) * self.per_step[2],
+        ];
+        let left = (slope - before) * self.per_two[0];
+        let right = (after - slope) * self.per_two[1];
+        (slope, left, right)
+    }
+
+    /// Whether there is an extreme inside; not on a straight line, nor where a value is no number.
+    #[inline(always)]
+    pub(crate) fn has_extreme(&self, values: [f64; 4]) -> bool {
+        let (slope, left, right) = self.shape(values);
+        let agreement = left * right;
+        // |slope| < |bend| step, without the division in the bend.
+        (agreement > 0.0) & (slope.abs() * (left + right).abs() < 2.0 * agreement * self.step)
+    }
+
+    /// The extreme, where there is one.
+    pub(crate) fn extreme(&self, values: [f64; 4]) -> f64 {
+        let (slope, left, right) = self.shape(values);
+        let bend = 2.0 * left * right / (left + right);
+        0.5 * (values[1] + values[2]) - 0.25 * (bend * self.step * self.step + slope * slope / bend)
+    }
 }
 
 #[cfg(test)]
@@ -226,10 +258,14 @@ mod tests {
     #[test]
     fn a_kink_makes_no_extreme() {
         // Flat, then rising: only one of the two parabolas would dip below.
-        let found = inner_extreme(&[0.0, 1.0, 2.0, 3.0], &[0.0, 0.0, 0.0, 1.0]);
-        assert!(found.is_nan());
-        let found = inner_extreme(&[0.0, 1.0, 2.0, 3.0], &[0.0, 0.0, 1.0, 2.0]);
-        assert!(found.is_nan());
-        assert!(inner_extreme(&[0.0, 1.0, 2.0, 3.0], &[f64::NAN; 4]).is_nan());
+        let stretch = Stretch::new(&[0.0, 1.0, 2.0, 3.0]);
+        assert!(!stretch.has_extreme([0.0, 0.0, 0.0, 1.0]));
+        assert!(!stretch.has_extreme([0.0, 0.0, 1.0, 2.0]));
+        assert!(!stretch.has_extreme([f64::NAN; 4]));
+        assert!(stretch.has_extreme([0.0, 1.0, 1.0, 0.0]));
+        assert_eq!(stretch.extreme([0.0, 1.0, 1.0, 0.0]), 1.125);
+        // Before the fourth sample there is no stretch.
+        let stretch = Stretch::new(&[f64::NAN, 1.0, 2.0, 3.0]);
+        assert!(!stretch.has_extreme([0.0, 1.0, 1.0, 0.0]));
     }
 }

@@ -1,6 +1,9 @@
 //! Extremes, mean and standard deviation over time of many values at once.
 
-use crate::curve;
+use crate::curve::Stretch;
+
+/// Values that are looked at together.
+const BLOCK: usize = 32;
 
 /// Smallest and largest of `n` values over time; NaN where no sample was a number.
 ///
@@ -36,15 +39,29 @@ impl Extremes {
     /// Adds the sample `values` (n) at `time` [s]; times increase.
     pub fn add(&mut self, time: f64, values: &[f64]) {
         let times = [self.times[0], self.times[1], self.times[2], time];
-        let [oldest, old, last] = &self.samples;
-        for (k, &value) in values.iter().enumerate() {
-            let (min, max) = (&mut self.min[k], &mut self.max[k]);
-            let around = [oldest[k], old[k], last[k], value];
-            // NaN where there is no crest: the smaller of NaN and a number is the number, and so
-            // the first sample needs no care either.
-            let crest = curve::inner_extreme(&times, &around);
-            *min = min.min(value).min(crest);
-            *max = max.max(value).max(crest);
+        let stretch = Stretch::new(&times);
+        let n = values.len();
+        let [oldest, old, last] = self.samples.each_ref().map(|sample| &sample[..n]);
+        let (min, max) = (&mut self.min[..n], &mut self.max[..n]);
+        // Few values have a crest, so most blocks do without its divisions.
+        for start in (0..n).step_by(BLOCK) {
+            let mut crests = false;
+            for k in start..n.min(start + BLOCK) {
+                // The smaller of NaN and a number is the number: the first sample needs no care.
+                min[k] = min[k].min(values[k]);
+                max[k] = max[k].max(values[k]);
+                crests |= stretch.has_extreme([oldest[k], old[k], last[k], values[k]]);
+            }
+            if crests {
+                for k in start..n.min(start + BLOCK) {
+                    let around = [oldest[k], old[k], last[k], values[k]];
+                    if stretch.has_extreme(around) {
+                        let crest = stretch.extreme(around);
+                        min[k] = min[k].min(crest);
+                        max[k] = max[k].max(crest);
+                    }
+                }
+            }
         }
         self.samples.rotate_left(1);
         self.samples[2].copy_from_slice(values);

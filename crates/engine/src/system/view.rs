@@ -241,8 +241,8 @@ fn von_mises(
         for sign in [1.0, -1.0] {
             let axial = wall_tension / area + sign * bend_moment * r / second_moment;
             let sum = (axial - hoop).powi(2) + (hoop - radial).powi(2) + (radial - axial).powi(2);
-            largest = largest.max((0.5 * sum + 3.0 * shear * shear).sqrt());
+            largest = largest.max(0.5 * sum + 3.0 * shear * shear);
         }
     }
-    largest
+    largest.sqrt()
 }

@@ -52,8 +52,29 @@ impl Drawing {
                 }
             }
         }
-        pixmap.encode_png().map_err(|error| fail(error.to_string()))
+        encode(&pixmap).map_err(|error| fail(error.to_string()))
     }
+}
+
+/// A picture without transparent places as a PNG file.
+///
+/// Drawings are mostly paper, and rows like the one above: with differences between rows the
+/// lightest compression takes a sixth of the time of the usual one, for files half as large again.
+fn encode(pixmap: &Pixmap) -> Result<Vec<u8>, png::EncodingError> {
+    let pixels = pixmap.pixels().iter();
+    let opaque: Vec<u8> = pixels
+        .flat_map(|p| [p.red(), p.green(), p.blue()])
+        .collect();
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, pixmap.width(), pixmap.height());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_deflate_compression(png::DeflateCompression::Level(1));
+    encoder.set_filter(png::Filter::Up);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&opaque)?;
+    writer.finish()?;
+    Ok(bytes)
 }
 
 fn line(pixmap: &mut Pixmap, path: &Path, stroke: &DrawnStroke, transform: Transform) {
