@@ -117,6 +117,11 @@ pub struct Line {
     /// Points of a polyline along which the elements are first laid, end A first, global, at least
     /// two (n x 3) [m]; empty: an arc between the ends.
     pub start_shape: Vec<[f64; 3]>,
+    /// Effective tension that is expected, by increasing distance from end A: pairs of distance and
+    /// tension (n x 2) [m, N]; empty where nothing is known. Discrete elements that are longer than
+    /// a bending layer take its length from it (docs/theory/dem.md, eq. (40)). No key of the model
+    /// file gives it; a coarse solution does.
+    pub tensions: Vec<[f64; 2]>,
 }
 
 impl Line {
@@ -126,6 +131,19 @@ impl Line {
             .iter()
             .flat_map(|section| &section.element_lengths)
             .sum()
+    }
+
+    /// Effective tension expected at a distance from end A [N]; 0 where nothing is known.
+    pub fn expected_tension(&self, arc_length: f64) -> f64 {
+        let after = self.tensions.partition_point(|point| point[0] < arc_length);
+        match (
+            self.tensions.get(after.wrapping_sub(1)),
+            self.tensions.get(after),
+        ) {
+            (Some(a), Some(b)) => a[1] + (b[1] - a[1]) * (arc_length - a[0]) / (b[0] - a[0]),
+            (Some(one), None) | (None, Some(one)) => one[1],
+            (None, None) => 0.0,
+        }
     }
 
     /// Number of elements over all sections.

@@ -361,6 +361,7 @@ mod tests {
             attachments: Vec::new(),
             ends: [LineEnd::Free, LineEnd::Free],
             start_shape: vec![[1.0, 0.0, 0.0], [1.0, 3.0, 0.0], [1.0, 3.0, -1.0]],
+            tensions: Vec::new(),
         };
         let layout = LineLayout {
             first_frame: 0,

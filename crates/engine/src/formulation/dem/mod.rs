@@ -122,6 +122,14 @@ fn node_stiffness(model: &Model, layout: &LineLayout, node: usize) -> ConnectorS
     }
 }
 
+/// Whether a lump sits at a node between two elements.
+fn has_lump(line: &Line, layout: &LineLayout, node: usize) -> bool {
+    let slack = END_SHARE * layout.length(node - 1).min(layout.length(node));
+    let at = layout.arc_length[node];
+    let mut lumps = line.attachments.iter();
+    lumps.any(|attachment| (attachment.arc_length - at).abs() < slack)
+}
+
 /// Its entry in the registry: one frame per element.
 pub(super) const FAMILY: Family = Family {
     kind: FormulationKind::Dem,
@@ -225,7 +233,12 @@ impl Dem {
             };
             let connector = match end {
                 None => {
-                    let stiffness = node_stiffness(model, layout, node);
+                    let mut stiffness = node_stiffness(model, layout, node);
+                    if has_lump(line, layout, node) {
+                        let sides = [node - 1, node].map(|element| half(model, layout, element));
+                        let tension = line.expected_tension(layout.arc_length[node]);
+                        stiffness = stiffness.with_layers_at_lump(sides, tension);
+                    }
                     let shift = Vector3::x() * stiffness.shift;
                     Connector {
                         law: ConnectorLaw::Beam(stiffness),

@@ -93,6 +93,7 @@ pub(super) fn resolve(
         attachments,
         ends: [end_a?, end_b?],
         start_shape: start_shape?,
+        tensions: Vec::new(),
     };
     let point_span = |end: &Option<EndTable>| match end {
         Some(EndTable::Connected(connection)) => connection.at.span.clone(),

@@ -6,6 +6,7 @@ pub mod connector;
 
 pub mod joint;
 mod law;
+mod layer;
 pub mod pair;
 pub mod pair_kernel;
 pub mod stiffness;
