@@ -243,10 +243,11 @@ fn val_li_2011_cantilever_first_frequencies() {
             .collect();
         let spans = (crossings.len() - 1) as f64;
         let frequency = spans / ((crossings[crossings.len() - 1] - crossings[0]) * 1e-3);
-        // The step lowers it by (omega h)^2 / 12 and a little more: 3e-5; 20 elements by 1e-5.
+        // The step lowers it by 0.18 (omega h)^2, with a spectral radius of 0.4 (1 / 12 and
+        // half the square of alpha_f - alpha_m): 6e-5; 20 elements by 1e-5.
         assert_near("frequency", frequency, expected, 1e-4 * expected);
         // The same system by its modes, without the error of the element.
         let mode = lowest_modes(&model, 1).modes[0].frequency_hz();
-        assert_near("natural mode", frequency, mode, 5e-5 * mode);
+        assert_near("natural mode", frequency, mode, 8e-5 * mode);
     }
 }

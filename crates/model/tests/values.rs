@@ -86,15 +86,15 @@ fn defaults_are_the_documented_ones() {
     assert_eq!(
         dynamics.step,
         StepControl::Adaptive {
-            accuracy: 2e-5,
+            accuracy: 1e-4,
             min: 1e-4,
-            max: 0.5
+            max: 1.0
         }
     );
     assert_eq!(
         dynamics.integrator,
         IntegratorSettings::GeneralisedAlpha {
-            spectral_radius: 0.8
+            spectral_radius: 0.4
         }
     );
     assert_eq!(dynamics.tolerance, 1e-5);

@@ -9,6 +9,11 @@ use crate::implicit::{ImplicitSystem, MotionState, ResidualSize, TangentWeights}
 const UNCHECKED_ITERATIONS: usize = 4;
 /// Share of the residual that an iteration with an old matrix may leave, to be worth another one.
 const GOOD_REDUCTION: f64 = 0.5;
+/// Share of the residual that an iteration with a new matrix may leave, for that matrix to serve
+/// again: where it leaves more, the problem bends too much for an old one.
+const WORTH_REUSE: f64 = 0.05;
+/// Growth of the residual since the first one, after which a solution is given up as lost.
+const LOST: f64 = 1e3;
 /// Solutions that get new matrices only, after an old one did not do.
 const PAUSE: usize = 8;
 /// Most iterations in a row with an old matrix.
@@ -97,7 +102,7 @@ impl Newton {
             system.begin();
         }
         let mut iterations = 0;
-        let mut previous = f64::INFINITY;
+        let (mut previous, mut first) = (f64::INFINITY, None);
         let mut may_reuse = self.pause == 0;
         self.pause = self.pause.saturating_sub(1);
         let mut reuses = 0;
@@ -114,7 +119,8 @@ impl Newton {
                     may_reuse = false;
                     self.pause = PAUSE;
                 }
-                reuse = may_reuse && !converged && reuses < MOST_REUSES;
+                let worth = reuses > 0 || residual < WORTH_REUSE * previous;
+                reuse = may_reuse && worth && !converged && reuses < MOST_REUSES;
             }
             if !converged && !reuse {
                 stage.linearise();
@@ -127,7 +133,10 @@ impl Newton {
                 residual,
                 singular: false,
             };
-            if !residual.newtons.is_finite() {
+            let lost = LOST * *first.get_or_insert(residual.newtons);
+            if !residual.newtons.is_finite()
+                || iterations > UNCHECKED_ITERATIONS && residual.newtons > lost
+            {
                 self.pause = PAUSE;
                 return Err(failure);
             }

@@ -22,6 +22,12 @@ const SMALLEST_CUT: f64 = 1e-4;
 const EXPLICIT_SHARE: f64 = 0.9;
 /// Steps that must all allow a larger one before the step grows.
 const PATIENCE: usize = 20;
+/// Share of a step in which Newton's method failed that it is repeated with.
+const CUT: f64 = 0.5;
+/// Share of that step above which later ones stay for a while.
+const CEILING: f64 = 0.8;
+/// Growth of that bound with every accepted step.
+const CEILING_GROWTH: f64 = 1.005;
 /// Growth that is taken at once: the step is much too small, as at the start.
 const LEAP: f64 = 2.5;
 /// Least growth that is worth a change.
@@ -148,6 +154,7 @@ pub fn simulate(
         ledger,
         statistics: SolverStatistics::default(),
         calm: Calm::new(),
+        ceiling: f64::INFINITY,
         time: 0.0,
     }
     .run(observer)
@@ -184,6 +191,8 @@ struct Simulation<'s> {
     ledger: EnergyLedger,
     statistics: SolverStatistics,
     calm: Calm,
+    /// Largest step to ask for since Newton's method failed [s].
+    ceiling: f64,
     time: f64,
 }
 
@@ -238,7 +247,8 @@ impl Simulation<'_> {
                     self.calm = Calm::new();
                     self.statistics.iterations += failure.iterations;
                     self.statistics.rejected_steps += 1;
-                    size = 0.25 * step;
+                    size = CUT * step;
+                    self.ceiling = CEILING * step;
                     if size < SMALLEST_CUT * wanted {
                         return Err(self.failed(end, step, &failure));
                     }
@@ -255,6 +265,7 @@ impl Simulation<'_> {
                 }
             }
             self.integrator.accept();
+            self.ceiling *= CEILING_GROWTH;
             self.time = end;
             self.statistics.steps += 1;
             if let Some(count) = self.statistics.steps_of_order.get_mut(outcome.order - 1) {
@@ -315,7 +326,7 @@ impl Simulation<'_> {
                 if outcome.iterations > self.settings.max_iterations / 2 {
                     proposal = proposal.min(step);
                 }
-                Ok(proposal.clamp(min, max))
+                Ok(proposal.min(self.ceiling).clamp(min, max))
             }
         }
     }

@@ -15,15 +15,21 @@ use crate::{
 
 use super::Slot;
 
-/// Error per step that is allowed where the file does not say [-]; named in the key's description.
-const DEFAULT_ACCURACY: f64 = 2e-5;
+/// Error per step that is allowed where the file does not say [-]: of generalised-alpha, which
+/// leaves out what vessels impose, and of other methods; named in the key's description.
+const DEFAULT_ACCURACY: f64 = 1e-4;
+const DEFAULT_ACCURACY_OF_OTHERS: f64 = 2e-5;
 /// Smallest step where the file does not say [s]; named in the key's description.
 const DEFAULT_MIN_STEP: f64 = 1e-4;
-/// Largest step where the file does not say [s]; named in the key's description.
-const DEFAULT_MAX_STEP: f64 = 0.5;
+/// Largest step where the file does not say [s]: of generalised-alpha and of other methods; named
+/// in the key's description.
+const DEFAULT_MAX_STEP: f64 = 1.0;
+const DEFAULT_MAX_STEP_OF_OTHERS: f64 = 0.5;
+/// Steps in the shortest period of a motion, at least; named in the key's description.
+const STEPS_PER_PERIOD: f64 = 12.0;
 
 /// Spectral radius where the file does not say [-]; named in the key's description.
-const DEFAULT_SPECTRAL_RADIUS: f64 = 0.8;
+const DEFAULT_SPECTRAL_RADIUS: f64 = 0.4;
 /// Highest order of BDF where the file does not say; named in the key's description.
 const DEFAULT_MAX_ORDER: usize = 2;
 
@@ -119,13 +125,14 @@ pub(super) fn dynamics(
             }
             window.si
         }
-        None => longest_period(vessels)
+        None => periods(vessels)
+            .reduce(f64::max)
             .unwrap_or(0.1 * duration)
             .min(duration),
     };
     DynamicsSettings {
         duration,
-        step: step_control(table, log),
+        step: step_control(table, vessels, log),
         integrator: integrator(table, log),
         tolerance: table.tolerance.si,
         max_iterations: table.max_iterations.value,
@@ -181,7 +188,7 @@ fn integrator(table: &DynamicsTable, log: &mut Log) -> IntegratorSettings {
     }
 }
 
-fn step_control(table: &DynamicsTable, log: &mut Log) -> StepControl {
+fn step_control(table: &DynamicsTable, vessels: &[Slot<Vessel>], log: &mut Log) -> StepControl {
     if let Some(step) = &table.step {
         let adaptive = [
             table.accuracy.as_ref().map(|q| (&q.span, "accuracy")),
@@ -198,14 +205,22 @@ fn step_control(table: &DynamicsTable, log: &mut Log) -> StepControl {
         check_below_one("accuracy", accuracy, log);
     }
     let min = table.min_step.as_ref().map_or(DEFAULT_MIN_STEP, |q| q.si);
-    let max = table.max_step.as_ref().map_or(DEFAULT_MAX_STEP, |q| q.si);
+    let (default_accuracy, default_max) = match table.integrator {
+        IntegratorChoice::GeneralisedAlpha => {
+            let shortest = periods(vessels).fold(f64::INFINITY, f64::min);
+            let longest_step = DEFAULT_MAX_STEP.min(shortest / STEPS_PER_PERIOD);
+            (DEFAULT_ACCURACY, longest_step.max(DEFAULT_MIN_STEP))
+        }
+        _ => (DEFAULT_ACCURACY_OF_OTHERS, DEFAULT_MAX_STEP_OF_OTHERS),
+    };
+    let max = table.max_step.as_ref().map_or(default_max, |q| q.si);
     if min > max {
         let message = format!("the smallest step, {min} s, is larger than the largest, {max} s");
         let written = table.min_step.as_ref().or(table.max_step.as_ref());
         let span = written.map_or(&table.key_span, |q| &q.span);
         log.error(Code::Value, span, message, "write min_step below max_step");
     }
-    let accuracy = table.accuracy.as_ref().map_or(DEFAULT_ACCURACY, |q| q.si);
+    let accuracy = table.accuracy.as_ref().map_or(default_accuracy, |q| q.si);
     StepControl::Adaptive { accuracy, min, max }
 }
 
@@ -222,16 +237,16 @@ pub(super) fn check_below_one<S>(key: &str, value: &Quantity<Dimensionless, S>, 
     }
 }
 
-fn longest_period(vessels: &[Slot<Vessel>]) -> Option<f64> {
+/// Periods of the harmonic motions that act [s].
+fn periods(vessels: &[Slot<Vessel>]) -> impl Iterator<Item = f64> {
     let motions = vessels
         .iter()
         .filter_map(|slot| slot.item.as_ref())
         .flat_map(|v| &v.motions);
-    let acting = motions.filter_map(|motion| match motion {
+    motions.filter_map(|motion| match motion {
         Motion::Harmonic {
             period, amplitude, ..
         } if *amplitude > 0.0 => Some(*period),
         _ => None,
-    });
-    acting.reduce(f64::max)
+    })
 }

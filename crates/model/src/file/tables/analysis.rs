@@ -46,14 +46,16 @@ table! {
         integrator: IntegratorChoice = "generalised-alpha",
         /// Constant step; absent: the step is chosen so that its error stays below `accuracy`.
         step: Option<Positive<Time>>,
-        /// Error allowed per step, as a fraction of the system's reference length; absent: 2e-5.
+        /// Error allowed per step, as a fraction of the system's reference length; absent: 1e-4
+        /// with generalised-alpha, else 2e-5.
         accuracy: Option<Positive<Dimensionless>>,
         /// Smallest step; absent: 1e-4 s.
         min_step: Option<Positive<Time>>,
-        /// Largest step; absent: 0.5 s.
+        /// Largest step; absent: with generalised-alpha 1 s, or a twelfth of the shortest period of
+        /// the harmonic motions if that is less, else 0.5 s.
         max_step: Option<Positive<Time>>,
         /// Of generalised-alpha: spectral radius at infinite frequency; 1 keeps, 0 removes what is
-        /// too fast for the step; absent: 0.8.
+        /// too fast for the step; absent: 0.4.
         spectral_radius: Option<NonNegative<Dimensionless>>,
         /// Of bdf: the highest order, 1 to 5; absent: 2. From 3 on, oscillations that are hardly
         /// damped may grow.
