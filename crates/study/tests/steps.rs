@@ -85,18 +85,18 @@ fn default_steps_are_long_and_keep_one_per_cent_in_all_six_cases() {
         [&free, &fine].map(|text| run(text, case, None))
     });
     for (case, [free, fine]) in cases.iter().zip(&found) {
-        // Steps of 0.05 s have a hundredth of the error of those of 0.4 s, where these are smooth.
+        // Steps of 0.05 s have a hundredth of the error of those of 0.5 s, where these are smooth.
         let errors = Figures::of(free).errors(&Figures::of(fine));
         assert!(
             errors.iter().all(|error| *error < 0.01),
             "{case}: {errors:?}"
         );
         let per_second = |count: Option<usize>| count.unwrap() as f64 / free.simulated_s.unwrap();
-        // Steps of 0.35 to 0.4 s, but for the first ten seconds.
-        assert!(per_second(free.steps) < 3.2, "{case}: {:?}", free.steps);
-        // Two to three iterations each, of which one or two with a new matrix.
+        // Steps of 0.5 to 0.6 s, but for the first ten seconds.
+        assert!(per_second(free.steps) < 2.4, "{case}: {:?}", free.steps);
+        // Three iterations each, of which two with a new matrix; nearly all with the current across.
         assert!(
-            per_second(free.iterations) < 8.0,
+            per_second(free.iterations) < 7.0,
             "{case}: {:?}",
             free.iterations
         );
@@ -112,15 +112,16 @@ fn an_accuracy_of_one_per_cent_holds_and_is_cheap() {
         ("elements = 200 }", "elements = 400 }"),
         (STEP, "step = \"0.05 s\"\n"),
     ]);
-    let jobs = [("a", false), ("f", false), ("a", true), ("f", true)];
-    let found = in_parallel(&jobs, None, |&(case, exact)| {
+    let jobs = ["a", "e", "f"].map(|case| [(case, false), (case, true)]);
+    let found = in_parallel(jobs.as_flattened(), None, |&(case, exact)| {
         if exact {
             run(&fine, case, None)
         } else {
             run(SEA_TRIAL, case, Some(0.01))
         }
     });
-    for ((case, _), (chosen, fine)) in jobs.iter().zip(found.iter().zip(&found[2..])) {
+    for (jobs, found) in jobs.iter().zip(found.chunks(2)) {
+        let ((case, _), chosen, fine) = (jobs[0], &found[0], &found[1]);
         let discretisation = chosen.discretisation.as_ref().unwrap();
         assert!(discretisation.reached, "{case}");
         let errors = Figures::of(chosen).errors(&Figures::of(fine));
@@ -130,14 +131,14 @@ fn an_accuracy_of_one_per_cent_holds_and_is_cheap() {
             assert!(*error < allowed, "{case}: {errors:?}");
         }
         let elements = discretisation.elements as f64;
-        let steps = chosen.steps.unwrap() as f64 / chosen.simulated_s.unwrap();
+        let iterations = chosen.iterations.unwrap() as f64 / chosen.simulated_s.unwrap();
         assert!(
-            elements * steps < MOST_WORK,
-            "{case}: {elements} elements, {steps} steps a second"
+            elements * iterations < MOST_WORK,
+            "{case}: {elements} elements, {iterations} iterations a second"
         );
     }
 }
 
-/// Elements times steps per simulated second: 200 elements at 0.1 s. Most cases take a seventh of
-/// it, 100 elements at 0.35 s.
-const MOST_WORK: f64 = 2000.0;
+/// Elements times iterations per simulated second: 35 elements with steps of 0.6 s and three
+/// iterations each are 175, and a plan that misses once and buys more is allowed for.
+const MOST_WORK: f64 = 250.0;

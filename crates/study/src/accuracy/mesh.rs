@@ -1,6 +1,6 @@
-//! Element lengths that follow what the lines do: short where they bend, long elsewhere.
+//! Element lengths: even ones, and those that follow what the lines do, short where they bend.
 //!
-//! Source: docs/theory/accuracy.md, eqs. (1) to (4).
+//! Source: docs/theory/accuracy.md, eqs. (1) to (4) and (7).
 
 use catenix_model::{Line, Model};
 
@@ -75,13 +75,6 @@ impl Density {
         density.raise_to_floor(line);
         density.limit_growth();
         density
-    }
-
-    /// Leaves this share of the elements.
-    pub(super) fn thin_out(&mut self, share: f64) {
-        for density in &mut self.elements_per_metre {
-            *density *= share;
-        }
     }
 
     /// No section has fewer than a few elements.
@@ -177,8 +170,41 @@ pub(super) fn remeshed(model: &Model, densities: &[Density], split: usize) -> Mo
     model
 }
 
+/// The line with about `count` elements of equal length between its lumps, each split in `split`.
+///
+/// There is a node at every lump that is half an element or more from the next.
+///
+/// Source: docs/theory/accuracy.md, eq. (7).
+pub(super) fn evenly(line: &Line, count: f64, split: usize) -> Line {
+    let mut line = line.clone();
+    let wanted = line.length() / count;
+    let lumps = line.attachments.iter().map(|lump| lump.arc_length);
+    let lumps: Vec<f64> = lumps.collect();
+    let mut start = 0.0;
+    for section in &mut line.sections {
+        let end = start + section.element_lengths.iter().sum::<f64>();
+        let mut places = vec![start];
+        for &lump in lumps.iter().filter(|lump| (start..end).contains(*lump)) {
+            let before = lump - places[places.len() - 1];
+            if before.min(end - lump) >= 0.5 * wanted {
+                places.push(lump);
+            }
+        }
+        places.push(end);
+        section.element_lengths.clear();
+        for pair in places.windows(2) {
+            let length = pair[1] - pair[0];
+            let count = ((length / wanted).round() as usize).max(1) * split;
+            let lengths = std::iter::repeat_n(length / count as f64, count);
+            section.element_lengths.extend(lengths);
+        }
+        start = end;
+    }
+    line
+}
+
 /// Unstretched distance of the nodes from end A (n_elements + 1) [m].
-fn nodes(line: &Line) -> Vec<f64> {
+pub(super) fn nodes(line: &Line) -> Vec<f64> {
     let lengths = line.sections.iter().flat_map(|s| &s.element_lengths);
     std::iter::once(0.0)
         .chain(lengths.scan(0.0, |sum, length| {
