@@ -15,6 +15,9 @@ const BEGIN: &str = "<!-- formulations table: begin -->";
 const END: &str = "<!-- formulations table: end -->";
 const FIGURES: &str = "docs/theory/figures";
 const CASES: [&str; 2] = ["a", "d"];
+/// Element counts over those of the model file, and that of the reference: half a minute in all.
+const MESHES: &str = "0.25,0.5,1";
+const REFERENCE_MESH: &str = "2";
 const FORMULATIONS: &str = "dem,fem,fem-exact,lumped";
 /// Results whose differences have a column: name, and what the column is called.
 const RESULTS: [(&str, &str); 4] = [
@@ -34,6 +37,7 @@ pub(crate) fn write_table(root: &Path) -> Result<(), String> {
     let mut command = Command::new(program);
     command.arg("compare").arg(root.join(MODEL));
     command.args(["--formulations", FORMULATIONS, "--json", "--quiet"]);
+    command.args(["--meshes", MESHES, "--reference-mesh", REFERENCE_MESH]);
     command.arg("--out").arg(&folder);
     for case in CASES {
         command.args(["--case", case]);

@@ -324,6 +324,12 @@ impl Rotary {
         axes * Matrix3::from_diagonal(&self.inertia) * axes.transpose()
     }
 
+    /// Kinetic energy [J].
+    pub(super) fn kinetic_energy(&self, at: &Situation<'_>) -> f64 {
+        let m = frame_motion(at.state, self.frame);
+        0.5 * m.spin.dot(&(self.tensor(&m.rotation) * m.spin))
+    }
+
     /// Adds the inertia of sections to a node.
     ///
     /// Source: docs/theory/fem.md, eq. (31).

@@ -275,10 +275,7 @@ impl<K: Kernel> Evaluation for FemEvaluation<K> {
                 terms.moved_ends += moved_end_power(seat, self.force(other.index, k), at);
             }
         }
-        for rotary in &fem.rotary {
-            let m = frame_motion(at.state, rotary.frame);
-            terms.kinetic += 0.5 * m.spin.dot(&(rotary.tensor(&m.rotation) * m.spin));
-        }
+        terms.kinetic += self.turning.kinetic_energy(at);
         for (joint, (state, side)) in fem.joints.iter().zip(&self.joints) {
             terms.elastic += state.energy();
             if let Carrier::Vessel(vessel) = joint.support.carrier {

@@ -9,7 +9,7 @@ use super::element::corotational::{Corotational, CorotationalState};
 use super::element::ends::{Blocks, End, Prediction};
 use super::element::field::{Carried, ElementBlocks, Field, FieldWeights};
 use super::element::lanes::corotational::CorotationalLanes;
-use super::element::lanes::field::Fields;
+use super::element::lanes::field::{Fields, Room};
 use super::element::lanes::{Assembled, Ends, Weights};
 use super::element::section::ElementSection;
 use super::element::weight::Couples;
@@ -221,7 +221,8 @@ impl Work for SideBySide<'_> {
             };
             let mass = T::read(token, &spread.mass);
             let weights = Some(&weights);
-            fields.put(&ends, mass, uniform, &mut loads, weights, &mut out);
+            let room = &mut Room::new(token);
+            fields.put(&ends, mass, uniform, &mut loads, weights, room, &mut out);
             beams.add(token, &ends, uniform, self.predicts, weights, &mut out);
             for lane in 0..cases.len() {
                 let [elastic, damping] = beams.energy();

@@ -9,7 +9,7 @@ use catenix_numerics::{BlockMatrix, MotionState, TangentWeights, Vector6};
 
 use super::super::Situation;
 use super::element::field::POINTS;
-use super::element::lanes::field::Fields;
+use super::element::lanes::field::{Fields, Room};
 use super::element::lanes::{Assembled, Ends, Weights};
 use super::kernel::{Kernel, Lanes};
 use super::load_lanes::{SeaLoads, SpreadRows};
@@ -214,6 +214,7 @@ impl<L: Lanes> Work for Assembly<'_, L> {
     #[inline(always)]
     fn run<T: Lane>(self, token: T::Token) {
         let predicts = self.spans.predicts;
+        let (mut out, mut room) = (Assembled::zeros(token), Room::new(token));
         for batch in &mut self.spans.batches {
             let ends = batch.ends::<T>(token, self.at.state);
             let own = match self.weights {
@@ -236,11 +237,13 @@ impl<L: Lanes> Work for Assembly<'_, L> {
                 sea: &self.at.sea,
                 token,
             };
-            let mut out = Assembled::zeros(token);
             let fields = Fields::new(&ends, length);
-            fields.put(&ends, mass, uniform, &mut loads, own.as_ref(), &mut out);
+            let weights = own.as_ref();
+            fields.put(
+                &ends, mass, uniform, &mut loads, weights, &mut room, &mut out,
+            );
             let beams = &mut batch.beams;
-            beams.add(token, &ends, uniform, predicts, own.as_ref(), &mut out);
+            beams.add(token, &ends, uniform, predicts, weights, &mut out);
             let mut end = 0;
             while end < 2 {
                 let [f, m] = out.force[end];

@@ -6,7 +6,7 @@ use catenix_model::LineType;
 use catenix_numerics::{Matrix3, Vector3};
 
 use crate::contact::seabed::{self, Contact};
-use crate::hydro::morison::{self, DragCoefficients, DragMotion};
+use crate::hydro::morison::{self, DragCoefficients, PointDrag};
 use crate::hydro::submergence::Submergence;
 use crate::system::frames::{LoadPowers, Sea};
 
@@ -77,7 +77,7 @@ pub(super) struct NodeLoad {
     chord: f64,
     wet: Submergence,
     current_slope: Vector3,
-    drag_motion: DragMotion,
+    water: PointDrag<f64>,
     drag: Vector3,
     added: Matrix3,
     contact: Option<Contact>,
@@ -91,19 +91,17 @@ impl NodeLoad {
         let axis = m.chord / chord;
         let wet = Submergence::new(m.position.z, axis.z, node.length, node.diameter);
         let (water, current_slope) = sea.current.at(m.position.z, sea.current_factor);
-        let drag_motion = DragMotion {
-            axis,
-            relative_velocity: water - m.velocity,
-            spin: Vector3::zeros(),
-        };
+        let relative = (&(water - m.velocity)).into();
+        let coefficients = [node.drag.normal, node.drag.axial];
+        let water = PointDrag::new(coefficients, (&axis).into(), relative);
         let height = m.position.z + sea.depth;
         NodeLoad {
             axis,
             chord,
             wet,
             current_slope,
-            drag: morison::drag(&node.drag, &drag_motion).force,
-            drag_motion,
+            drag: water.force().into(),
+            water,
             added: morison::added_mass(&axis, node.added_normal, node.added_axial),
             contact: sea
                 .seabed
@@ -136,14 +134,14 @@ impl NodeLoad {
     /// Source: docs/theory/lumped.md, eq. (22).
     pub fn tangent(&self, node: &NodeProperties, m: &NodeMotion) -> NodeTangent {
         let share = self.wet.share;
-        let drag = morison::drag_tangent(&node.drag, &self.drag_motion);
+        // By the axis, nothing along it.
+        let [by_velocity, drag_by_axis] = self.water.derivatives().map(Matrix3::from);
         let up = Vector3::z().transpose();
         let along = self.axis.dot(&m.acceleration);
         let turned = Matrix3::identity() * along + self.axis * m.acceleration.transpose();
-        let mut by_axis =
-            (turned * (node.added_axial - node.added_normal) - drag.force_axis) * share;
-        let mut position = drag.force_velocity * self.current_slope * up * -share;
-        let mut velocity = drag.force_velocity * share;
+        let mut by_axis = (turned * (node.added_axial - node.added_normal) - drag_by_axis) * share;
+        let mut position = by_velocity * self.current_slope * up * -share;
+        let mut velocity = by_velocity * share;
         if self.wet.by_height != 0.0 {
             let wetted = self.added * m.acceleration - self.drag - Vector3::z() * node.buoyancy;
             position += wetted * up * self.wet.by_height;

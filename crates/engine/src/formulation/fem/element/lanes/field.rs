@@ -141,6 +141,7 @@ impl<T: Lane> Fields<T> {
     ///
     /// Source: docs/theory/fem.md, eqs. (26) to (30).
     #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "a struct would only rename them")]
     pub fn put<L: SpreadLoads<T>>(
         &self,
         ends: &[Ends<T>; 2],
@@ -148,6 +149,7 @@ impl<T: Lane> Fields<T> {
         uniform: T,
         loads: &mut L,
         weights: Option<&Weights<T>>,
+        room: &mut Room<T>,
         out: &mut Assembled<T>,
     ) {
         let heavy = mass * self.length * (1.0 / 420.0);
@@ -170,14 +172,7 @@ impl<T: Lane> Fields<T> {
             self.put_forces(&forces, out);
             return;
         };
-        let none = Mat3::diagonal(heavy.same(0.0));
-        let mut points = [PointTangent {
-            translation: none,
-            slope: none,
-            raised: self.value[0],
-            velocity: none,
-            acceleration: none,
-        }; POINT_COUNT];
+        let points = &mut room.0;
         let mut point = 0;
         while point < POINT_COUNT {
             let stations = self.stations(point);
@@ -270,6 +265,27 @@ fn row<T: Lane>(
         point += 1;
     }
     sum
+}
+
+/// Room for what is found at the points of integration; to be kept from element to element, since
+/// clearing it costs as much as filling it.
+pub struct Room<T>([PointTangent<T>; POINT_COUNT]);
+
+impl<T: Lane> Room<T> {
+    /// Some room.
+    #[inline(always)]
+    pub fn new(token: T::Token) -> Room<T> {
+        let none = Mat3::zeros(token);
+        Room(
+            [PointTangent {
+                translation: none,
+                slope: none,
+                raised: Vec3::zeros(token),
+                velocity: none,
+                acceleration: none,
+            }; POINT_COUNT],
+        )
+    }
 }
 
 /// Derivatives of a load, times the length that its point stands for.
