@@ -61,7 +61,7 @@ pub(crate) fn refined(
     };
     let planned = model.dynamics.is_some() && !wants_bending(&model, &references);
     let chosen = if planned {
-        Planner::scouting(model, references, target, watch)?.choose(target)?
+        Planner::scouting(model, references, watch)?.choose(target)?
     } else {
         Family::adapted_to(model, references, watch)?.choose(target)?
     };
@@ -75,7 +75,6 @@ pub(crate) fn refined(
     let mut steps = None;
     if let (Some(dynamics), Some(chosen)) = (&mut case.model.dynamics, chosen.dynamics) {
         dynamics.step = chosen.step;
-        dynamics.tolerance = chosen.tolerance;
         steps = Some(chosen.step);
     }
     let discretisation = Discretisation {

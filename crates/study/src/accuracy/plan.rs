@@ -29,9 +29,6 @@ const STEPS_PER_PERIOD: f64 = 12.0;
 const LARGEST_STEP: f64 = 1.0;
 /// Local error that the largest steps may have, over the system's reference length.
 const LARGEST_STEP_ERROR: f64 = 2e-4;
-/// Tolerance of Newton's method over the wanted accuracy; never finer than the model asks for.
-const TOLERANCE_SHARE: f64 = 3e-3;
-const LARGEST_TOLERANCE: f64 = 3e-5;
 /// Smallest step [s].
 const SMALLEST_STEP: f64 = 1e-5;
 /// Error of a run over its difference from one with halved elements: holds from first order on.
@@ -60,8 +57,6 @@ pub(super) struct Planner<'w> {
     /// Lines that are planned together.
     groups: Vec<Vec<usize>>,
     largest_step: f64,
-    /// Tolerance of Newton's method in all runs but those with short steps.
-    tolerance: f64,
     trials: usize,
     watch: &'w dyn Watch,
 }
@@ -93,7 +88,6 @@ impl<'w> Planner<'w> {
     pub(super) fn scouting(
         mut model: Model,
         references: Vec<Reference>,
-        target: f64,
         watch: &'w dyn Watch,
     ) -> Result<Planner<'w>, Halt> {
         if let Some(dynamics) = &model.dynamics {
@@ -109,17 +103,11 @@ impl<'w> Planner<'w> {
             vec![lines.collect()]
         };
         let largest_step = (shortest_period(&model) / STEPS_PER_PERIOD).min(LARGEST_STEP);
-        let wanted = (TOLERANCE_SHARE * target).min(LARGEST_TOLERANCE);
-        let tolerance = model
-            .dynamics
-            .as_ref()
-            .map_or(wanted, |d| d.tolerance.max(wanted));
         let mut planner = Planner {
             model,
             references,
             groups,
             largest_step,
-            tolerance,
             trials: 0,
             watch,
         };
@@ -164,9 +152,6 @@ impl<'w> Planner<'w> {
         }
         let factor = set.step * shortening;
         if let Some(dynamics) = &mut model.dynamics {
-            if shortening == 1.0 {
-                dynamics.tolerance = self.tolerance;
-            }
             dynamics.step = StepControl::Adaptive {
                 // The local error of a second-order method falls with the cube of the step.
                 accuracy: LARGEST_STEP_ERROR * factor.powi(3),
