@@ -9,7 +9,9 @@ use std::process::Command;
 
 use catenix_engine::{System, simulate, solve_statics};
 use catenix_model::file::read_study;
-use catenix_model::{Channel, Model, all_channels};
+use catenix_model::{Channel, LoadCase, Model, all_channels};
+use catenix_results::Extremes;
+use catenix_study::choose_for_accuracy;
 use cpu_time::ThreadTime;
 use serde::{Deserialize, Serialize};
 
@@ -27,6 +29,8 @@ pub(crate) struct Task {
     pub channels: Vec<String>,
     /// Whether to stop at the equilibrium.
     pub statics_only: bool,
+    /// Accuracy for which mesh and step are chosen first, instead of those in the file [-].
+    pub accuracy: Option<f64>,
 }
 
 /// What a load case cost, and what came out.
@@ -34,8 +38,9 @@ pub(crate) struct Task {
 pub(crate) struct Probe {
     /// Elements of all lines.
     pub elements: usize,
-    /// Processor time of reading and assembling the model [s].
-    pub reading_cpu_s: f64,
+    /// Processor time of assembling the model [s].
+    #[serde(alias = "reading_cpu_s")]
+    pub assembling_cpu_s: f64,
     /// Processor time of the static equilibrium [s].
     pub statics_cpu_s: f64,
     /// Iterations of the static equilibrium.
@@ -111,10 +116,10 @@ impl Task {
     pub(crate) fn command(&self, context: &Context) -> Command {
         let mut command = Command::new(&context.own);
         command.arg("probe").arg(&self.model).arg(&self.case);
-        command.arg(if self.statics_only {
-            "statics"
-        } else {
-            "motion"
+        command.arg(match (self.statics_only, self.accuracy) {
+            (true, _) => "statics".to_owned(),
+            (false, None) => "motion".to_owned(),
+            (false, Some(accuracy)) => format!("{ACCURACY}{accuracy}"),
         });
         command.args(&self.channels);
         command
@@ -128,15 +133,28 @@ impl Task {
                 case: case.clone(),
                 channels: channels.to_vec(),
                 statics_only: extent == "statics",
+                accuracy: match extent.strip_prefix(ACCURACY) {
+                    Some(number) => Some(number.parse().map_err(|_| USAGE)?),
+                    None => None,
+                },
             }),
-            _ => Err("usage: catenix-bench probe MODEL CASE statics|motion CHANNEL...".to_owned()),
+            _ => Err(USAGE.to_owned()),
         }
     }
 
     /// Computes it here.
     pub(crate) fn compute(&self) -> Result<Probe, String> {
+        let case = read_case(&self.model, &self.case)?;
+        let model = match self.accuracy {
+            // The choice costs some runs of its own; what counts here is the run that it leads to.
+            Some(accuracy) => {
+                choose_for_accuracy(&case, accuracy, &())
+                    .map_err(|error| error.map_or_else(String::new, |error| error.message))?
+                    .model
+            }
+            None => case.model,
+        };
         let clock = ThreadTime::now();
-        let model = read_case(&self.model, &self.case)?;
         let mut columns = Vec::new();
         for name in &self.channels {
             columns.push(Probe::parts(&model, name)?);
@@ -144,7 +162,7 @@ impl Task {
         let system = System::new(&model).map_err(|error| error.to_string())?;
         let mut probe = Probe {
             elements: model.lines.iter().map(|line| line.element_count()).sum(),
-            reading_cpu_s: clock.elapsed().as_secs_f64(),
+            assembling_cpu_s: clock.elapsed().as_secs_f64(),
             ..Probe::default()
         };
         let clock = ThreadTime::now();
@@ -173,12 +191,16 @@ impl Task {
     }
 }
 
-fn read_case(file: &Path, name: &str) -> Result<Model, String> {
+/// What stands before an accuracy in the arguments of a probe.
+const ACCURACY: &str = "accuracy=";
+const USAGE: &str =
+    "usage: catenix-bench probe MODEL CASE statics|motion|accuracy=SHARE CHANNEL...";
+
+fn read_case(file: &Path, name: &str) -> Result<LoadCase, String> {
     let study = read_study(file).map_err(|errors| errors.to_string())?;
     let mut cases = study.cases.into_iter();
     let found = cases.find(|case| case.name == name);
-    let case = found.ok_or_else(|| format!("{}: no case `{name}`", file.display()))?;
-    Ok(case.model)
+    found.ok_or_else(|| format!("{}: no case `{name}`", file.display()))
 }
 
 /// Values over all steps.
@@ -186,12 +208,14 @@ struct History {
     columns: Vec<Vec<Channel>>,
     times: Vec<f64>,
     values: Vec<Vec<f64>>,
+    extremes: Extremes,
 }
 
 impl History {
     fn new(columns: Vec<Vec<Channel>>) -> History {
         let values = vec![Vec::new(); columns.len()];
         History {
+            extremes: Extremes::new(columns.len()),
             columns,
             times: Vec::new(),
             values,
@@ -200,26 +224,30 @@ impl History {
 
     fn add(&mut self, time: f64, read: impl Fn(&Channel) -> f64) {
         self.times.push(time);
+        let mut latest = Vec::with_capacity(self.columns.len());
         for (parts, values) in self.columns.iter().zip(&mut self.values) {
-            values.push(match parts.as_slice() {
+            let value = match parts.as_slice() {
                 [one] => read(one),
                 parts => parts
                     .iter()
                     .map(|part| read(part).powi(2))
                     .sum::<f64>()
                     .sqrt(),
-            });
+            };
+            values.push(value);
+            latest.push(value);
         }
+        self.extremes.add(time, &latest);
     }
 
     fn statistics(&self, window: f64) -> Vec<Statistics> {
         let start = self.times.last().map_or(0.0, |end| end - window);
-        let of = |values: &Vec<f64>| Statistics {
-            min: values.iter().copied().fold(f64::INFINITY, f64::min),
-            max: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        let of = |(k, values): (usize, &Vec<f64>)| Statistics {
+            min: self.extremes.min[k],
+            max: self.extremes.max[k],
             mean: mean_from(&self.times, values, start),
         };
-        self.values.iter().map(of).collect()
+        self.values.iter().enumerate().map(of).collect()
     }
 }
 

@@ -34,6 +34,8 @@ pub(crate) enum Stepping {
     Fixed(f64),
     /// As the program chooses where the model file says nothing.
     Default,
+    /// Mesh and steps as they are chosen for an accuracy [-].
+    Chosen(f64),
 }
 
 impl Stepping {
@@ -42,6 +44,7 @@ impl Stepping {
         match self {
             Stepping::Fixed(step) => format!("{step} s"),
             Stepping::Default => "adaptive".to_owned(),
+            Stepping::Chosen(accuracy) => format!("`--accuracy {}%`", 100.0 * accuracy),
         }
     }
 }
@@ -117,7 +120,7 @@ pub(crate) fn variant(
     variant.set("output.field_interval", 10.0 * INTERVAL)?;
     match stepping {
         Stepping::Fixed(step) => variant.set("dynamics.step", step)?,
-        Stepping::Default => variant.remove("dynamics", "step"),
+        Stepping::Default | Stepping::Chosen(_) => variant.remove("dynamics", "step"),
     }
     Ok(variant)
 }
@@ -133,13 +136,17 @@ pub(crate) fn task(
         "sea-trial-{}-{}-{}",
         mesh[0],
         mesh[1],
-        stepping.words().replace([' ', '.'], "_")
+        stepping.words().replace([' ', '.', '`', '%'], "_")
     );
     Ok(Task {
         model: variant(context, mesh, stepping)?.write(context, &name)?,
         case: case.to_owned(),
         channels: CHANNELS.map(str::to_owned).to_vec(),
         statics_only: false,
+        accuracy: match stepping {
+            Stepping::Chosen(accuracy) => Some(accuracy),
+            _ => None,
+        },
     })
 }
 

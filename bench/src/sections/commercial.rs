@@ -48,6 +48,7 @@ fn measure(context: &Context) -> Result<Value, String> {
                 case: (*case).to_owned(),
                 channels: CHANNELS.map(str::to_owned).to_vec(),
                 statics_only: false,
+                accuracy: None,
             };
             tasks.push((task, stepping));
         }

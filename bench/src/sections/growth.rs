@@ -108,6 +108,7 @@ fn measure(context: &Context) -> Result<Value, String> {
             case: "base".to_owned(),
             channels: Vec::new(),
             statics_only: false,
+            accuracy: None,
         });
     }
     let mut fastest: Vec<Option<Probe>> = vec![None; tasks.len()];
@@ -215,6 +216,7 @@ mod tests {
             case: "base".to_owned(),
             channels: vec!["|cable.end_a.force|".to_owned()],
             statics_only: false,
+            accuracy: None,
         };
         let probe = task.compute().expect("a run");
         assert_eq!((probe.elements, probe.steps), (10, steps(10)));

@@ -66,6 +66,7 @@ fn measure(context: &Context) -> Result<Value, String> {
         case: "a".to_owned(),
         channels: Vec::new(),
         statics_only,
+        accuracy: None,
     };
     let (statics, _) = count(context, &task(true), "statics")?;
     let (total, functions) = count(context, &task(false), "motion")?;

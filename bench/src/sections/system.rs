@@ -21,11 +21,12 @@ pub(crate) const SECTION: Section = Section {
     charts,
 };
 
-const STEPPINGS: [Stepping; 4] = [
+const STEPPINGS: [Stepping; 5] = [
     Stepping::Fixed(0.1),
     Stepping::Fixed(0.2),
     Stepping::Fixed(0.4),
     Stepping::Default,
+    Stepping::Chosen(0.01),
 ];
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -113,6 +114,7 @@ fn markdown(data: &Value) -> Result<String, String> {
     let data: Data = recalled(data)?;
     let mut table = Table::new(&[
         "case, step",
+        "elements",
         "CPU ms per simulated s",
         "times real time",
         "steps (rejected)",
@@ -127,6 +129,7 @@ fn markdown(data: &Value) -> Result<String, String> {
         let probe = &run.probe;
         table.row([
             format!("{}, {}", run.case, run.stepping.words()),
+            probe.elements.to_string(),
             digits(1e3 * probe.per_simulated_second()),
             grouped((1.0 / probe.per_simulated_second()).round()),
             format!("{} ({})", probe.steps, probe.rejected_steps),
@@ -144,10 +147,15 @@ fn markdown(data: &Value) -> Result<String, String> {
         let changes = data.references.iter().map(|(_, r)| of(&r.change));
         digits(100.0 * changes.fold(0.0, f64::max))
     };
-    let statics = data.runs.iter().map(|run| run.probe.statics_cpu_s);
+    let meshed = data
+        .runs
+        .iter()
+        .filter(|run| run.probe.elements == elements);
+    let statics = meshed.map(|run| run.probe.statics_cpu_s);
     let [cpu, simulated] = data.command;
     Ok(format!(
-        "{MODEL}, {elements} elements; the motion alone, computed by the engine on one thread.\n\
+        "{MODEL}, {elements} elements where the accuracy does not choose others; the motion alone,\n\
+         computed by the engine on one thread.\n\
          Errors are those of mesh and step together, against {} times as many elements and steps of\n\
          {} s; from half that fineness the reference itself changed by at most {} % in offset, {} %\n\
          in top tension and {} % in hose force.\n\n{}\n\

@@ -79,6 +79,22 @@ pub fn compute_case(
     recorder.finish(&account.outcome(status, error))
 }
 
+/// A case on the mesh and with the step that a wanted accuracy asks for, not computed yet.
+///
+/// # Errors
+/// What the solver said where nothing could be computed; `None` where the watch stopped it.
+pub fn choose_for_accuracy(
+    case: &LoadCase,
+    accuracy: f64,
+    watch: &dyn Watch,
+) -> Result<LoadCase, Option<CaseError>> {
+    match refined(case, accuracy, Wanted::Everything, watch) {
+        Ok((case, _)) => Ok(case),
+        Err(Halt::Failed(error)) => Err(Some(error)),
+        Err(Halt::Interrupted) => Err(None),
+    }
+}
+
 /// Finds the static equilibrium of a case, on the mesh that an `accuracy` asks for if one is given.
 pub fn compute_statics(case: &LoadCase, accuracy: Option<f64>, watch: &dyn Watch) -> CaseSummary {
     let mut account = Account::begin();

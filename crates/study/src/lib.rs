@@ -14,7 +14,7 @@ mod path;
 mod verification;
 mod watch;
 
-pub use case::{compute_case, compute_statics};
+pub use case::{choose_for_accuracy, compute_case, compute_statics};
 pub use comparison::{ComparisonSettings, MemoryMeter, compare_formulations};
 pub use modes::compute_modes;
 pub use parallel::in_parallel;

@@ -37,6 +37,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
         &[
             "catenix-numerics",
             "catenix-engine",
+            "catenix-results",
+            "catenix-study",
             "catenix-report",
             "catenix-model",
         ],
