@@ -181,6 +181,8 @@ test("vessels have the shape and length of the model", async () => {
 
 test("whole arrays come in one answer, not chunk by chunk", async () => {
   const page = await openPage(server.url);
+  // Else what the first load still asks for would count too.
+  await ready(page);
   const asked = [];
   page.on("request", (request) => asked.push(new URL(request.url()).pathname));
   await page.reload();
