@@ -15,7 +15,7 @@ const BEGIN: &str = "<!-- formulations table: begin -->";
 const END: &str = "<!-- formulations table: end -->";
 const FIGURES: &str = "docs/theory/figures";
 const CASES: [&str; 2] = ["a", "d"];
-/// Element counts over those of the model file, and that of the reference: half a minute in all.
+/// Element counts over those of the model file, and that of the reference: two minutes in all.
 const MESHES: &str = "0.25,0.5,1";
 const REFERENCE_MESH: &str = "2";
 const FORMULATIONS: &str = "dem,fem,fem-exact,lumped";
