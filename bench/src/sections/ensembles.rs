@@ -64,10 +64,15 @@ fn measure(context: &Context) -> Result<Value, String> {
     variant.remove_all("figures");
     let model = variant.write(context, "ensemble")?;
     let run = |chosen: Option<usize>, threads: usize| -> Result<[f64; 2], String> {
+        // Else the run would spend its time on taking away the results of the one before.
+        let results = context.work.join("results");
+        if results.exists() {
+            std::fs::remove_dir_all(&results).map_err(|error| error.to_string())?;
+        }
         let mut command = Command::new(&context.catenix);
         command.arg("run").arg(&model).args(["--quiet", "--json"]);
         command.args(["--threads", &threads.to_string(), "--out"]);
-        command.arg(context.work.join("results"));
+        command.arg(&results);
         if let Some(k) = chosen {
             command.args(["--case", &name(k)]);
         }
