@@ -11,11 +11,11 @@ const UNCHECKED_ITERATIONS: usize = 4;
 const GOOD_REDUCTION: f64 = 0.5;
 /// Share of the residual that an iteration with a new matrix may leave, for that matrix to serve
 /// again: where it leaves more, the problem bends too much for an old one.
-const WORTH_REUSE: f64 = 0.05;
+const WORTH_REUSE: f64 = 0.025;
 /// Growth of the residual since the first one, after which a solution is given up as lost.
 const LOST: f64 = 1e3;
 /// Solutions that get new matrices only, after an old one did not do.
-const PAUSE: usize = 8;
+const PAUSE: usize = 3;
 /// Most iterations in a row with an old matrix.
 const MOST_REUSES: usize = 3;
 /// Most halvings of an increment.

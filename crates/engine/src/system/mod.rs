@@ -12,6 +12,7 @@ pub(crate) mod frame_kernel;
 pub(crate) mod frames;
 mod linearised;
 mod loads;
+mod own_axes;
 pub(crate) mod shape;
 mod solver;
 pub(crate) mod surroundings;

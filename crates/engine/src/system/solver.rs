@@ -8,6 +8,7 @@ use catenix_numerics::{
 
 use super::System;
 use super::frames::Sea;
+use super::own_axes::OwnAxes;
 use super::{assembly, loads};
 use crate::body::motion::RigidMotion;
 use crate::formulation::{Evaluation, Situation};
@@ -43,6 +44,7 @@ pub struct SystemSolver<'a> {
     pub(super) lines: Box<dyn Evaluation>,
     pub(super) matrix: BlockMatrix,
     factors: Elimination,
+    own_axes: OwnAxes,
     factorisations: usize,
     explicit_room: Option<Box<ExplicitRoom>>,
 }
@@ -93,6 +95,7 @@ impl<'a> SystemSolver<'a> {
             vessels,
             matrix: BlockMatrix::zeros(&system.topology),
             factors: Elimination::new(&system.topology),
+            own_axes: OwnAxes::new(system.frame_count(), system.pair_count()),
             factorisations: 0,
             explicit_room: None,
         }
@@ -231,6 +234,7 @@ impl Clone for SystemSolver<'_> {
             lines: self.lines.duplicate(),
             matrix: self.matrix.clone(),
             factors: self.factors.clone(),
+            own_axes: self.own_axes.clone(),
             factorisations: self.factorisations,
             explicit_room: self.explicit_room.clone(),
         }
@@ -306,6 +310,7 @@ impl ImplicitSystem for SystemSolver<'_> {
     fn solve(&mut self, residual: &[Vector6], increment: &mut [Vector6]) -> Result<(), usize> {
         let topology = &self.system.topology;
         self.factorisations += 1;
+        self.own_axes.turn(residual, &mut self.matrix);
         self.factors
             .factorise_and_solve(topology, &self.matrix, residual, increment)
             .map_err(|error| error.frame)?;
@@ -314,13 +319,12 @@ impl ImplicitSystem for SystemSolver<'_> {
     }
 
     fn solve_again(&mut self, residual: &[Vector6], increment: &mut [Vector6]) {
-        for (x, r) in increment.iter_mut().zip(residual) {
-            *x = -r;
-        }
+        self.own_axes.opposite(residual, increment);
         self.factors.solve(&self.system.topology, increment);
     }
 
     fn moving(&mut self, increment: &[Vector6]) {
+        self.own_axes.moving(increment);
         self.lines.moving(self.system, increment);
     }
 

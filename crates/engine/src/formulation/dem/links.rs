@@ -412,6 +412,9 @@ impl<T: Lane> Pair<T> {
         };
         let moment_by = pair.round_moment_by_rotations(law, self.twist);
         let mut tangents = pair.elastic_tangent(law, geometric, self.levers, &moment_by);
+        if predicts {
+            tangents.turn_with(pair.moments_by_force(self.arms, geometric - self.elastic[0]));
+        }
         if link.damped && weights.velocity > 0.0 {
             let own = PairWeights {
                 velocity: T::splat(token, weights.velocity),

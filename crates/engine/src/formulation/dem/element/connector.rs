@@ -221,6 +221,10 @@ impl ConnectorState {
             first_moment: close(first_moment),
             second_moment: close(second_moment),
         };
+        let change = geometric - self.elastic.force;
+        let levers = [&first.lever, &second.lever].map(Vec3::from);
+        let moments = self.geometry.moments_by_force(levers, (&change).into());
+        tangent.turn_with(moments.map(Vector3::from));
         if stiffness.damping > 0.0 && rates.velocity > 0.0 {
             self.add_damping(stiffness, first, second, rates, &mut tangent);
         }

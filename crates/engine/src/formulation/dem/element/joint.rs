@@ -226,11 +226,15 @@ impl JointState {
         arm.second_rotation -= lever[1];
         second_moment = second_moment.plus(&arm.led_by(&total_hat));
         let spring = self.spring_tangent(joint, support, element, rates);
-        PairTangent {
+        let mut tangent = PairTangent {
             force: force.scaled(-1.0),
             first_moment: first_moment.plus(&spring.scaled(-1.0)),
             second_moment: second_moment.plus(&spring),
-        }
+        };
+        let change = elastic - self.elastic;
+        let arms = [support.lever, -(element.lever + self.gap)];
+        tangent.turn_with(arms.map(|arm| arm.cross(&change)));
+        tangent
     }
 
     fn spring_tangent(

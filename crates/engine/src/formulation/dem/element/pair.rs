@@ -100,6 +100,17 @@ pub struct PairTangent {
     pub second_moment: Sensitivity,
 }
 
+impl PairTangent {
+    /// Adds what moments (3) [N m] on the two frames do when they turn with these.
+    ///
+    /// Source: docs/theory/solver.md, eq. (6b).
+    #[inline]
+    pub(crate) fn turn_with(&mut self, [first, second]: [Vector3; 2]) {
+        self.first_moment.first_rotation += first.cross_matrix();
+        self.second_moment.second_rotation += second.cross_matrix();
+    }
+}
+
 /// How velocities follow increments, for the damping part of a tangent.
 #[derive(Debug, Clone, Copy)]
 pub struct RateWeights {

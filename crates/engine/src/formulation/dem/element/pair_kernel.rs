@@ -69,6 +69,16 @@ impl<T: Lane> PairTangents<T> {
             moment: [zero; 2],
         }
     }
+
+    /// Adds what moments (3) [N m] on the two frames do when they turn with these.
+    ///
+    /// Source: docs/theory/solver.md, eq. (6b).
+    #[inline(always)]
+    pub fn turn_with(&mut self, moments: [Vec3<T>; 2]) {
+        let [first, second] = &mut self.moment;
+        first.rotation[0] = first.rotation[0].plus_hat(moments[0]);
+        second.rotation[1] = second.rotation[1].plus_hat(moments[1]);
+    }
 }
 
 /// Rates of a pair.
@@ -229,6 +239,27 @@ impl<T: Lane> PairGeometry<T> {
         self.across() * (stretch * self.inverse)
     }
 
+    /// The same for a predicted force with the tension and the shear force (3) [N].
+    ///
+    /// Source: docs/theory/dem.md, below eq. (7).
+    #[inline(always)]
+    fn turning_of(&self, tension: T, shear_force: Vec3<T>) -> Vec3<T> {
+        (self.across() * tension).plus(-self.extension(), shear_force) * self.inverse
+    }
+
+    /// Moments on the two frames that come with a change of the elastic force (3) [N].
+    ///
+    /// Source: docs/theory/dem.md, eqs. (6) and (7).
+    #[inline(always)]
+    pub fn moments_by_force(&self, levers: [Vec3<T>; 2], change: Vec3<T>) -> [Vec3<T>; 2] {
+        let tension = self.mean.dot(change);
+        let turning = self.turning_of(tension, change.plus(-tension, self.mean));
+        [
+            self.axes[0].cross(turning) - levers[0].cross(change),
+            self.axes[1].cross(turning) + levers[1].cross(change),
+        ]
+    }
+
     /// Derivative of the elastic force and moments. The connection points lie `levers` [m] along the
     /// axes from the origins of the frames. `force`: the one of the geometric part (3) [N];
     /// `moment_by`: derivatives of the moment by the rotations.
@@ -254,7 +285,7 @@ impl<T: Lane> PairGeometry<T> {
         // K, Q, t and R of the theory.
         let by_gap = (m * along).outer(m).plus_diagonal(law.shear);
         let by_sum = m.outer(beyond * inverse - m * excess).plus_diagonal(excess);
-        let turning = (across * tension).plus(-extension, shear_force) * inverse;
+        let turning = self.turning_of(tension, shear_force);
         let bent = extension * excess * inverse;
         let skewed = turning * inverse;
         let turning_by_sum = (beyond * (inverse * inverse))

@@ -2,7 +2,7 @@
 
 use catenix_numerics::{Matrix3, Vector3, Vector6, so3};
 
-use super::connector::ConnectorState;
+use super::connector::{ConnectorState, Prediction};
 use super::joint::{DotLaw, DotSpring, JointState, JointStiffness};
 use super::law::{BendLaw, GeneralLaw};
 use super::pair::{PairForces, PairTangent, RateWeights, Sensitivity, Side};
@@ -262,6 +262,52 @@ fn joint_tangent_matches_finite_differences() {
 }
 
 /// Elastic forces are the gradient of the energy.
+/// Where levers lie along the axes, a force has no torque about them, however large the predicted
+/// one is: moments in own axes show that, those in global axes do not.
+#[test]
+fn the_torque_about_an_axis_does_not_know_the_predicted_force() {
+    let rates = RateWeights {
+        velocity: 4.0,
+        rotation: [Matrix3::identity(); 2],
+    };
+    let [mut first, mut second] = frames();
+    (first.lever, second.lever) = (Vector3::x(), Vector3::x() * -0.8);
+    let [first, second] = [first.side(), second.side()];
+    let stiffness = stiffness();
+    let state = ConnectorState::new(&stiffness, &first, &second);
+    let forces = state.forces(&first, &second);
+    let torques = |prediction: Option<&Prediction>| {
+        let mut tangent = state.tangent(&stiffness, &first, &second, prediction, &rates);
+        tangent.turn_with(
+            [forces.first, forces.second].map(|force| force.fixed_rows::<3>(3).into_owned()),
+        );
+        let about = |side: &Side, moment: &Sensitivity| {
+            let axis = side.rotation.column(0).transpose();
+            [
+                axis * moment.translation,
+                axis * moment.first_rotation,
+                axis * moment.second_rotation,
+            ]
+        };
+        [
+            about(&first, &tangent.first_moment),
+            about(&second, &tangent.second_moment),
+        ]
+    };
+    let own = torques(None);
+    let predicted = torques(Some(&Prediction {
+        extension: 0.7,
+        across: Vector3::new(0.4, -0.9, 0.3),
+    }));
+    for (own, predicted) in own.iter().flatten().zip(predicted.iter().flatten()) {
+        // Roundings of stiffness times lengths of the order of one.
+        assert!(
+            (own - predicted).norm() < 1e-12 * stiffness.axial,
+            "{own} {predicted}"
+        );
+    }
+}
+
 fn check_gradient(
     energy: impl Fn(&Side, &Side) -> f64,
     forces: impl Fn(&Side, &Side) -> PairForces,
