@@ -111,7 +111,7 @@ impl Block6 {
     }
 
     #[inline]
-    fn column_mut(&mut self, column: usize) -> &mut [f64; 6] {
+    pub(crate) fn column_mut(&mut self, column: usize) -> &mut [f64; 6] {
         self.0[6 * column..]
             .first_chunk_mut()
             .expect("a block has six columns of six")

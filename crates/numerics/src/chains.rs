@@ -9,6 +9,7 @@
 use crate::Vector6;
 use crate::block::{Block6, BlockLu};
 use crate::junctions::{JunctionFactors, JunctionPattern};
+use crate::order::Order;
 
 /// A run of frames `first .. first + len`, each coupled to the next.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -214,9 +215,9 @@ pub struct Factorisation {
     ahead: Vec<Block6>,
     /// The block that couples the next row back to this frame.
     back: Vec<Block6>,
-    /// D^-1 E towards the near junction, where there is one.
+    /// D^-1 E towards the near junction, where there is one; up to the last such frame.
     near: Vec<Block6>,
-    /// The near junction's row in this frame's column.
+    /// The near junction's row in this frame's column; as long.
     near_row: Vec<Block6>,
     junctions: JunctionFactors,
 }
@@ -225,12 +226,16 @@ impl Factorisation {
     /// Room for the factors of matrices on `topology`.
     pub fn new(topology: &Topology) -> Factorisation {
         let n = topology.chain_frames;
+        let chains = topology.chains.iter();
+        let bordered = chains.filter(|chain| Order::of(chain).near.is_some());
+        let border = bordered.map(|chain| chain.first + chain.len).max();
+        let border = vec![Block6::ZERO; border.unwrap_or(0)];
         Factorisation {
             lu: vec![BlockLu::EMPTY; n],
             ahead: vec![Block6::ZERO; n],
             back: vec![Block6::ZERO; n],
-            near: vec![Block6::ZERO; n],
-            near_row: vec![Block6::ZERO; n],
+            near: border.clone(),
+            near_row: border,
             junctions: JunctionFactors::new(&topology.junctions),
         }
     }
@@ -373,76 +378,6 @@ fn negative_eigenvalues_of(lu: &BlockLu) -> usize {
     eigenvalues.iter().filter(|&&value| value < 0.0).count()
 }
 
-/// Elimination order of a chain: from the end without a junction, if there is one, since a
-/// junction at the near end fills a border column all along the chain.
-pub(crate) struct Order {
-    first: usize,
-    len: usize,
-    reversed: bool,
-    /// Junction before the first frame.
-    pub(crate) near: Option<usize>,
-    /// Junction behind the last frame.
-    pub(crate) far: Option<usize>,
-}
-
-impl Order {
-    pub(crate) fn of(chain: &Chain) -> Order {
-        let reversed = chain.head.is_some() && chain.tail.is_none();
-        let (near, far) = if reversed {
-            (chain.tail, chain.head)
-        } else {
-            (chain.head, chain.tail)
-        };
-        Order {
-            first: chain.first,
-            len: chain.len,
-            reversed,
-            near,
-            far,
-        }
-    }
-
-    /// Number of frames.
-    pub(crate) fn len(&self) -> usize {
-        self.len
-    }
-
-    #[inline(always)]
-    pub(crate) fn frame(&self, step: usize) -> usize {
-        if self.reversed {
-            self.first + self.len - 1 - step
-        } else {
-            self.first + step
-        }
-    }
-
-    /// (frame, near junction) and (near junction, frame) of the first frame in order.
-    pub(crate) fn near_blocks<'m>(&self, chain: usize, matrix: &'m BlockMatrix) -> &'m [Block6; 2] {
-        if self.reversed {
-            &matrix.tail[chain]
-        } else {
-            &matrix.head[chain]
-        }
-    }
-
-    /// Blocks (k, next) and (next, k), where next is the far junction after the last frame.
-    #[inline(always)]
-    pub(crate) fn link<'m>(
-        &self,
-        step: usize,
-        chain: usize,
-        matrix: &'m BlockMatrix,
-    ) -> (&'m Block6, &'m Block6) {
-        let k = self.frame(step);
-        match (self.reversed, step + 1 == self.len) {
-            (false, false) => (&matrix.upper[k], &matrix.lower[k]),
-            (true, false) => (&matrix.lower[k - 1], &matrix.upper[k - 1]),
-            (false, true) => (&matrix.tail[chain][0], &matrix.tail[chain][1]),
-            (true, true) => (&matrix.head[chain][0], &matrix.head[chain][1]),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -509,11 +444,12 @@ mod tests {
         };
         near(&x);
         let mut fast = Elimination::new(&topology);
-        fast.factorise_and_solve(&topology, &matrix, &rhs, &mut x)
+        let mut in_place = matrix.clone();
+        fast.factorise_and_solve(&topology, &mut in_place, &rhs, &mut x)
             .unwrap();
         near(&x);
         x.copy_from_slice(&rhs);
-        fast.solve(&topology, &mut x);
+        fast.solve(&topology, &in_place, &mut x);
         near(&x);
     }
 

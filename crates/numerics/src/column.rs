@@ -3,15 +3,11 @@
 //! A column is `N` registers of the instruction set `S`: 6 numbers, and up to two idle lanes behind
 //! them that hold anything.
 
+use std::ops::Range;
+
 use pulp::Simd;
 
 use crate::Block6;
-
-/// Room for the six columns of a block, one after another, with the idle lanes of the last.
-pub(crate) const ROOM: usize = 40;
-
-/// Six columns in memory.
-pub(crate) type Columns = [f64; ROOM];
 
 /// Six numbers in registers.
 #[derive(Clone, Copy)]
@@ -35,20 +31,53 @@ impl<S: Simd, const N: usize> Column<S, N> {
 
     /// Six numbers that no others need to follow.
     #[inline(always)]
-    pub(crate) fn read_six(from: &[f64; 6]) -> Self {
-        let mut room = [0.0; 8];
-        room[..6].copy_from_slice(from);
-        Self::read(&room)
+    pub(crate) fn read_six(s: S, from: &[f64; 6]) -> Self {
+        let mut own = Self::splat(s, 0.0);
+        let mut k = 0;
+        while k < N {
+            own.0[k] = s.partial_load_f64s(&from[Self::part(k)]);
+            k += 1;
+        }
+        own
+    }
+
+    /// Writes six numbers and leaves alone what follows them.
+    #[inline(always)]
+    pub(crate) fn write_six(self, s: S, to: &mut [f64; 6]) {
+        let mut k = 0;
+        while k < N {
+            s.partial_store_f64s(&mut to[Self::part(k)], self.0[k]);
+            k += 1;
+        }
+    }
+
+    /// Those of six numbers that are in register `k`.
+    #[inline(always)]
+    fn part(k: usize) -> Range<usize> {
+        let start = k * S::F64_LANES;
+        start..(start + S::F64_LANES).min(6)
     }
 
     /// Column `column` of a block.
     #[inline(always)]
-    pub(crate) fn of_block(block: &Block6, column: usize) -> Self {
-        if column < 5 || Self::WIDTH == 6 {
+    pub(crate) fn of_block(s: S, block: &Block6, column: usize) -> Self {
+        if column < 5 {
             Self::read(&block.0[6 * column..])
         } else {
-            Self::read_six(block.column(column))
+            Self::read_six(s, block.column(5))
         }
+    }
+
+    /// The columns of a block.
+    #[inline(always)]
+    pub(crate) fn all_of_block(s: S, block: &Block6) -> [Self; 6] {
+        let mut columns = [Self::splat(s, 0.0); 6];
+        let mut k = 0;
+        while k < 6 {
+            columns[k] = Self::of_block(s, block, k);
+            k += 1;
+        }
+        columns
     }
 
     /// Writes the width of a column to the start of `to`.
@@ -62,11 +91,14 @@ impl<S: Simd, const N: usize> Column<S, N> {
 
     /// Writes all columns of a block.
     #[inline(always)]
-    pub(crate) fn write_all(columns: &[Self; 6], to: &mut Columns) {
-        // In order, since each writes its idle lanes over the start of the next.
-        for (k, column) in columns.iter().enumerate() {
-            column.write(&mut to[6 * k..]);
+    pub(crate) fn write_block(s: S, columns: &[Self; 6], to: &mut Block6) {
+        // In order, since each but the last writes its idle lanes over the start of the next.
+        let mut k = 0;
+        while k < 5 {
+            columns[k].write(&mut to.0[6 * k..]);
+            k += 1;
         }
+        columns[5].write_six(s, to.column_mut(5));
     }
 
     /// self + factor x other
@@ -250,14 +282,10 @@ mod tests {
 
         #[inline(always)]
         fn run<S: Simd, const N: usize>(self, s: S) -> (Block6, bool) {
-            let columns = std::array::from_fn(|k| Column::<S, N>::of_block(&self.0, k));
+            let columns = Column::<S, N>::all_of_block(s, &self.0);
             let (inverse, safe) = invert(s, columns);
             let mut block = Block6::ZERO;
-            for (k, column) in inverse.into_iter().enumerate() {
-                let mut six = [0.0; 8];
-                column.write(&mut six);
-                block.0[6 * k..6 * k + 6].copy_from_slice(&six[..6]);
-            }
+            Column::write_block(s, &inverse, &mut block);
             (block, safe)
         }
     }

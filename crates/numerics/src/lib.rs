@@ -23,6 +23,7 @@ mod junctions;
 pub mod lanes;
 mod measure;
 mod newton;
+mod order;
 mod passes;
 pub mod so3;
 pub mod spline;

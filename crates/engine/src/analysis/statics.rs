@@ -137,7 +137,9 @@ pub fn solve_statics<'a>(
     let settings = &system.model().statics;
     let solver = SystemSolver::at_rest(system, settings.current);
     if settings.equilibrium {
-        return find_equilibrium(solver, progress);
+        let mut solution = find_equilibrium(solver, progress)?;
+        solution.solver.rest();
+        return Ok(solution);
     }
     let mut search = Search::new(solver, system.first_shape().clone(), progress);
     search.static_residual();
@@ -160,13 +162,8 @@ pub(super) fn find_equilibrium<'a>(
     let mut search = Search::new(solver, system.first_shape().clone(), progress);
     let allowed = system.allowed_residual(settings.tolerance);
     search.run(allowed, settings.max_iterations)?;
-    let Search {
-        mut solver,
-        mut state,
-        iterations,
-        residual,
-        ..
-    } = search;
+    // What only the search needs ends here.
+    let (mut solver, mut state, iterations, residual) = search.end();
     let mut warnings = Vec::new();
     warnings.extend(system.round_off_warning());
     match free_motion::find(&mut solver, &mut state) {
@@ -237,6 +234,11 @@ impl<'s, 'a> Search<'s, 'a> {
                 frame: 0,
             },
         }
+    }
+
+    /// What it found.
+    fn end(self) -> (SystemSolver<'a>, MotionState, usize, ResidualSize) {
+        (self.solver, self.state, self.iterations, self.residual)
     }
 
     fn run(&mut self, allowed: f64, max_iterations: usize) -> Result<(), StaticsError> {

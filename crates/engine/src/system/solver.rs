@@ -42,6 +42,7 @@ pub struct SystemSolver<'a> {
     residual_measure: BlockMeasure,
     increment_measure: BlockMeasure,
     pub(super) lines: Box<dyn Evaluation>,
+    /// Empty until it is assembled; a solution puts its factors in its place.
     pub(super) matrix: BlockMatrix,
     factors: Elimination,
     own_axes: OwnAxes,
@@ -93,12 +94,18 @@ impl<'a> SystemSolver<'a> {
                 system.formulation.clone().evaluation(&at)
             },
             vessels,
-            matrix: BlockMatrix::zeros(&system.topology),
+            matrix: BlockMatrix::default(),
             factors: Elimination::new(&system.topology),
             own_axes: OwnAxes::new(system.frame_count(), system.pair_count()),
             factorisations: 0,
             explicit_room: None,
         }
+    }
+
+    /// Gives back the memory of the matrix until the next one is assembled.
+    pub(crate) fn rest(&mut self) {
+        self.matrix = BlockMatrix::default();
+        self.factors.rest();
     }
 
     /// The system.
@@ -111,7 +118,7 @@ impl<'a> SystemSolver<'a> {
         self.load_control = Some(control);
         self.placed_at = None;
         // At limit and branch points the matrix is singular.
-        self.factors.exchange_rows();
+        self.factors.exchange_rows(&self.system.topology);
     }
 
     /// Sets the factor on the controlled loads.
@@ -132,11 +139,12 @@ impl<'a> SystemSolver<'a> {
 
     /// x <- S^-1 x with the factors of the last solution.
     pub(crate) fn solve_for(&mut self, x: &mut [Vector6]) {
-        self.factors.solve(&self.system.topology, x);
+        let topology = &self.system.topology;
+        self.factors.solve(topology, &self.matrix, x);
     }
 
-    /// x <- S^-1 x with the matrix of the last assembly, and with rows exchanged: for matrices that
-    /// are nearly singular on purpose.
+    /// x <- S^-1 x with the matrix of the last assembly, not solved with since, and with rows
+    /// exchanged: for matrices that are nearly singular on purpose.
     ///
     /// # Errors
     /// The frame whose pivot is singular.
@@ -291,6 +299,9 @@ impl ImplicitSystem for SystemSolver<'_> {
         residual: &mut [Vector6],
     ) {
         self.place(time);
+        if weights.is_some() && self.matrix.diagonal.is_empty() {
+            self.matrix = BlockMatrix::zeros(&self.system.topology);
+        }
         let at = Situation {
             system: self.system,
             sea: sea(self.system, time, self.current_acts),
@@ -312,7 +323,7 @@ impl ImplicitSystem for SystemSolver<'_> {
         self.factorisations += 1;
         self.own_axes.turn(residual, &mut self.matrix);
         self.factors
-            .factorise_and_solve(topology, &self.matrix, residual, increment)
+            .factorise_and_solve(topology, &mut self.matrix, residual, increment)
             .map_err(|error| error.frame)?;
         negate(increment);
         Ok(())
@@ -320,7 +331,8 @@ impl ImplicitSystem for SystemSolver<'_> {
 
     fn solve_again(&mut self, residual: &[Vector6], increment: &mut [Vector6]) {
         self.own_axes.opposite(residual, increment);
-        self.factors.solve(&self.system.topology, increment);
+        let topology = &self.system.topology;
+        self.factors.solve(topology, &self.matrix, increment);
     }
 
     fn moving(&mut self, increment: &[Vector6]) {
