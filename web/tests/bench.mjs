@@ -2,7 +2,7 @@
 // page.
 
 import { spawn, spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import net from "node:net";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
@@ -166,17 +166,49 @@ export async function proxy(url) {
   };
 }
 
+/** Lays the archives of the cases that have ended out as folders, which stores may have as well. */
+export function unpack(results) {
+  const cases = join(results, "results.zarr", "cases");
+  for (const name of readdirSync(cases).filter((name) => name.endsWith(".zip"))) {
+    for (const [file, content] of unzipped(readFileSync(join(cases, name)))) {
+      const path = join(cases, name.slice(0, -4), ...file.split("/"));
+      mkdirSync(dirname(path), { recursive: true });
+      writeFileSync(path, content);
+    }
+    rmSync(join(cases, name));
+  }
+}
+
+/** The files of an archive, by name: one after another, uncompressed, each behind its header. */
+function unzipped(bytes) {
+  const files = new Map();
+  for (let at = 0; bytes.readUInt32LE(at) === 0x04034b50; ) {
+    const [size, length] = [bytes.readUInt32LE(at + 22), bytes.readUInt16LE(at + 26)];
+    const start = at + 30 + length;
+    files.set(bytes.toString("utf8", at + 30, start), bytes.subarray(start, start + size));
+    at = start + size;
+  }
+  return files;
+}
+
 /** An array of a store: shape, and values of a row or of everything. */
 export function array(results, path) {
-  const root = join(results, "results.zarr", ...path.split("/"));
-  const meta = JSON.parse(readFileSync(join(root, "zarr.json"), "utf8"));
+  const [, name, ...inside] = path.split("/");
+  const folder = join(results, "results.zarr", "cases", name);
+  const archive = `${folder}.zip`;
+  const files = existsSync(archive) ? unzipped(readFileSync(archive)) : null;
+  const read = (...way) => {
+    const whole = [...inside, ...way];
+    return files ? files.get(whole.join("/")) : readFileSync(join(folder, ...whole));
+  };
+  const meta = JSON.parse(read("zarr.json").toString("utf8"));
   const [rows, columns = 1] = meta.shape;
   const chunkRows = meta.chunk_grid.configuration.chunk_shape[0];
   const size = meta.data_type === "float32" ? 4 : 8;
   const at = (row, column = 0) => {
     const chunk = Math.floor(row / chunkRows);
     const tail = meta.shape.length > 1 ? [String(chunk), "0"] : [String(chunk)];
-    const bytes = readFileSync(join(root, "c", ...tail));
+    const bytes = read("c", ...tail);
     const offset = ((row - chunk * chunkRows) * columns + column) * size;
     return size === 4 ? bytes.readFloatLE(offset) : bytes.readDoubleLE(offset);
   };

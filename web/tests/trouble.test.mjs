@@ -5,7 +5,7 @@ import { spawnSync } from "node:child_process";
 import { cpSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { array, closeBrowser, compute, folder, here, openPage, proxy, ready, scrub, shownValue, start } from "./bench.mjs";
+import { array, closeBrowser, compute, folder, here, openPage, proxy, ready, scrub, shownValue, start, unpack } from "./bench.mjs";
 
 const model = join(here, "model.toml");
 let results;
@@ -19,6 +19,7 @@ after(closeBrowser);
 function copy(name) {
   const path = join(folder, name);
   cpSync(results, path, { recursive: true });
+  unpack(path);
   return path;
 }
 
@@ -108,7 +109,7 @@ test("a root that becomes newer, damaged or empty is told, and the page recovers
   const server = await start("view", changed);
   const page = await openPage(server.url);
   await ready(page);
-  const newer = text.replace('"catenix_store_format":1', '"catenix_store_format":7');
+  const newer = text.replace('"catenix_store_format":2', '"catenix_store_format":7');
   assert.notEqual(newer, text);
   for (const [content, words] of [[newer, /store format 7/], [text.slice(0, 200), /damaged/]]) {
     writeFileSync(root, content);
@@ -131,6 +132,7 @@ test("a root that becomes newer, damaged or empty is told, and the page recovers
 test("a case that has not begun, and results that vanish and come again", async () => {
   const changed = copy("changed");
   const path = join(changed, "results.zarr/cases/calm");
+  const calm = join(copy("unchanged"), "results.zarr/cases/calm");
   const text = readFileSync(join(path, "zarr.json"), "utf8");
   const node = JSON.parse(text);
   for (const key of ["history_rows", "field_rows", "summary_json"]) {
@@ -138,7 +140,7 @@ test("a case that has not begun, and results that vanish and come again", async 
   }
   node.attributes.status = "pending";
   rmSync(path, { recursive: true });
-  cpSync(join(results, "results.zarr/cases/calm/zarr.json"), join(path, "zarr.json"));
+  cpSync(join(calm, "zarr.json"), join(path, "zarr.json"));
   writeFileSync(join(path, "zarr.json"), JSON.stringify(node));
   const server = await start("view", changed);
   const page = await openPage(server.url);
@@ -148,7 +150,7 @@ test("a case that has not begun, and results that vanish and come again", async 
   await page.keyboard.press("c");
   await page.waitForFunction(() => document.querySelector("#empty").textContent.includes("has not begun"));
   assert.ok(await page.isDisabled("#play"));
-  cpSync(join(results, "results.zarr/cases/calm"), path, { recursive: true });
+  cpSync(calm, path, { recursive: true });
   await page.waitForFunction(() => document.querySelector("#empty").hidden);
   await ready(page);
 
@@ -200,7 +202,7 @@ test("the command line tells what it cannot show", () => {
   assert.match(missing.stderr, /no Catenix result store/);
   const newer = copy("newer");
   const root = join(newer, "results.zarr/zarr.json");
-  writeFileSync(root, readFileSync(root, "utf8").replace('"catenix_store_format":1', '"catenix_store_format":7'));
+  writeFileSync(root, readFileSync(root, "utf8").replace('"catenix_store_format":2', '"catenix_store_format":7'));
   const refused = view(newer);
   assert.equal(refused.status, 4);
   assert.match(refused.stderr, /store format 7/);

@@ -106,7 +106,7 @@ fn what_cannot_be_done_ends_with_the_code_that_the_help_lists() {
     // A store of a later version names that version.
     let root = bench.path("out/results.zarr/zarr.json");
     let metadata = std::fs::read_to_string(&root).unwrap();
-    let newer = metadata.replace("\"catenix_store_format\":1", "\"catenix_store_format\":99");
+    let newer = metadata.replace("\"catenix_store_format\":2", "\"catenix_store_format\":99");
     assert_ne!(newer, metadata);
     std::fs::write(&root, newer).unwrap();
     let (code, document) = bench.json(&["export", "out", "--to", "csv"]);

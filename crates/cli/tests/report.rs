@@ -92,7 +92,7 @@ fn errors_say_what_to_do_and_exit_with_4() {
 
     let root = bench.path("results/model/results.zarr/zarr.json");
     let text = std::fs::read_to_string(&root).unwrap();
-    let newer = text.replace("\"catenix_store_format\":1", "\"catenix_store_format\":99");
+    let newer = text.replace("\"catenix_store_format\":2", "\"catenix_store_format\":99");
     assert_ne!(text, newer);
     std::fs::write(&root, newer).unwrap();
     let (code, json) = bench.json(&["report", "results/model"]);

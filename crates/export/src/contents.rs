@@ -1,7 +1,5 @@
 //! What there is to export of one load case: the rows that were written and are wanted.
 
-use std::path::Path;
-
 use catenix_results::{CaseDescription, LinePlace, Status, StoredCase};
 
 use crate::{ExportError, Thinning};
@@ -28,11 +26,10 @@ impl CaseContents {
     /// files end at the same time.
     pub(crate) fn read(
         stored: StoredCase,
-        store: &Path,
         lines: &[String],
         thinning: &Thinning,
     ) -> Result<Self, ExportError> {
-        let mut description = stored.describe(store)?;
+        let mut description = stored.describe()?;
         let progress = &description.progress;
         let all = |count: usize| (0..count).collect::<Vec<_>>();
         let history = match &description.time {

@@ -113,12 +113,7 @@ pub fn export(
     let mut contents = Vec::new();
     for name in study.case_names().iter().filter(asked) {
         let case = study.case(name)?;
-        contents.push(CaseContents::read(
-            case,
-            study.path(),
-            &request.lines,
-            &request.thinning,
-        )?);
+        contents.push(CaseContents::read(case, &request.lines, &request.thinning)?);
     }
     check_lines(&contents, &request.lines)?;
     let notes = notes(&contents);

@@ -332,6 +332,7 @@ fn interrupted_and_killed_runs_give_what_they_have_and_say_so() {
     let mut recorder = store.record_case(&study.cases[0]);
     let start = common::Moment { time: 0.0 };
     recorder.record_static(&study.cases[0], &start).unwrap();
+    recorder.flush().unwrap();
     std::mem::forget(recorder);
     let exported = bench.export(&bench.request(ExportFormat::Csv)).unwrap();
     assert_eq!(exported.cases.len(), 1);
@@ -350,7 +351,7 @@ fn interrupted_and_killed_runs_give_what_they_have_and_say_so() {
 #[test]
 fn damage_is_an_error_and_leaves_nothing() {
     let bench = Bench::complete();
-    let line = bench.path("results/results.zarr/cases/a/lines/pipe");
+    let line = common::unpack(&bench.path("results"), "a").join("lines/pipe");
     let chunk = line.join("curvature/c/0/0");
     let good = fs::read(&chunk).unwrap();
     let mut flipped = good.clone();

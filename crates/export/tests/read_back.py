@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 import pyarrow.parquet
 import xarray as xr
+import zarr
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
@@ -26,16 +27,24 @@ CURVES = ["min", "mean", "max", "std", "run_min", "run_max"]
 CF_UNITS = {"deg": "degree", "1/m": "m-1"}
 
 
+def location(store: Path, case: str):
+    """The archive of a case that has ended, the folder of another."""
+    folder = store / "cases" / case
+    archive = folder.with_name(f"{case}.zip")
+    return zarr.storage.ZipStore(archive, mode="r") if archive.exists() else folder
+
+
+def open_group(store: Path, case: str, group: str | None = None) -> xr.Dataset:
+    return xr.open_zarr(location(store, case), group=group, consolidated=False).load()
+
+
 class Stored:
     """What the store holds of a case, cut to the rows that were written."""
 
     def __init__(self, store: Path, case: str):
         self.store, self.case = store, case
 
-        def open_group(group: str) -> xr.Dataset:
-            return xr.open_zarr(store, group=group, consolidated=False).load()
-
-        whole = open_group(f"cases/{case}")
+        whole = open_group(store, case)
         self.attrs = whole.attrs
         rows = {"time": slice(whole.attrs.get("history_rows", 0))}
         self.histories = whole.isel({key: rows[key] for key in rows if key in whole.sizes})
@@ -49,7 +58,7 @@ class Stored:
         self.lines = {}
         # Of a case that has not begun there is nothing but its description.
         for line in scene["lines"] if "history_rows" in whole.attrs else []:
-            group = open_group(f"cases/{case}/lines/{line['name']}")
+            group = open_group(store, case, f"lines/{line['name']}")
             fields = slice(whole.attrs.get("field_rows", 0))
             self.lines[line["name"]] = group.isel(field_time=fields)
 
@@ -98,13 +107,10 @@ def check_table(stored: Stored, read, has_std: bool) -> None:
 
 def check_modes(store: Path, case: str, read) -> None:
     """Modes are stored in the synthetic stores only."""
-    if not (store / "cases" / case / "modes").is_dir():
+    tree = xr.open_datatree(location(store, case), engine="zarr", consolidated=False)
+    if "modes" not in tree:
         return
-
-    def open_group(group: str) -> xr.Dataset:
-        return xr.open_zarr(store, group=f"cases/{case}/modes{group}", consolidated=False).load()
-
-    stored, table, shapes = open_group(""), read("modes"), read("mode_shapes")
+    stored, table, shapes = tree["modes"], read("modes"), read("mode_shapes")
     same(table["mode"], stored["mode"])
     for column, name in [
         ("frequency [Hz]", "frequency"),
@@ -114,10 +120,7 @@ def check_modes(store: Path, case: str, read) -> None:
     ]:
         same(table[column], stored[name])
     for kind in ["lines", "bodies"]:
-        for folder in sorted((store / "cases" / case / "modes" / kind).iterdir()):
-            if not folder.is_dir():
-                continue
-            part = open_group(f"/{kind}/{folder.name}")
+        for _, part in sorted(stored[kind].children.items()):
             shape = shapes[shapes["name"] == part.attrs["name"]]
             for component in ["displacement", "rotation"]:
                 unit = "m" if component == "displacement" else "rad"

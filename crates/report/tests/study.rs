@@ -14,7 +14,7 @@ use catenix_model::LoadCase;
 use catenix_report::{Language, Report, ReportError, ReportOptions, write_report};
 use catenix_results::{ResultStore, Status, StoredStudy, Summary};
 use pages::{is_self_contained, parse, rows, text};
-use synthetic::{DURATION_S, Moment, STEP_S, provenance, study, write_store};
+use synthetic::{DURATION_S, Moment, STEP_S, provenance, study, unpack, write_store};
 
 const HOSTILE: &str = "<b>&\"'{{ 7 }}提升管</b>";
 
@@ -392,9 +392,7 @@ fn a_damaged_store_is_an_error_that_names_the_file() {
         DURATION_S,
         Status::Complete,
     );
-    let chunk = directory
-        .path()
-        .join("results.zarr/cases/a/buffer.offset_x/c/0");
+    let chunk = unpack(directory.path(), "a").join("buffer.offset_x/c/0");
     let mut bytes = fs::read(&chunk).unwrap();
     bytes[5] ^= 1;
     fs::write(&chunk, bytes).unwrap();

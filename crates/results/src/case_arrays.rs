@@ -1,12 +1,10 @@
 //! The arrays of one load case: histories, and per line the fields, range graphs and static state.
 
-use std::path::Path;
-
 use catenix_model::{Channel, Line, LineQuantity, Model};
 
 use crate::layout::{self, RANGE_SUFFIXES, RUN_SUFFIXES, array_attributes, component, long_name};
 use crate::series::Series;
-use crate::zarr::{Array, ArrayShape, Attributes, FloatKind, Group};
+use crate::zarr::{Array, ArrayShape, Attributes, FloatKind, Group, Place};
 use crate::{Extremes, RangeGraph, StoreError};
 
 /// Most rows of a history in one chunk.
@@ -43,7 +41,7 @@ pub(crate) struct LineArrays {
 impl CaseArrays {
     /// Makes the groups and arrays of a case.
     pub(crate) fn create(
-        case: &Path,
+        case: &Place,
         model: &Model,
         channels: &[Channel],
     ) -> Result<Self, StoreError> {
@@ -61,7 +59,7 @@ impl CaseArrays {
             .max();
         let chunk_rows = chunk_rows(times.len(), FIELD_CHUNK_VALUES / most_nodes.unwrap_or(1));
         let mut fields = Series::new(chunk_rows, times);
-        Group::create(layout::lines_path(case), &Attributes::new())?;
+        Group::create(layout::lines_place(case), &Attributes::new())?;
         let lines = model
             .lines
             .iter()
@@ -74,8 +72,8 @@ impl CaseArrays {
         })
     }
 
-    /// Appends a row to the histories; returns whether that filled a chunk.
-    pub(crate) fn push_history(&mut self, time: f64, values: &[f64]) -> Result<bool, StoreError> {
+    /// Appends a row to the histories.
+    pub(crate) fn push_history(&mut self, time: f64, values: &[f64]) -> Result<(), StoreError> {
         self.history.push(0, &[time]);
         for (index, value) in values.iter().enumerate() {
             self.history.push(index + 1, &[*value]);
@@ -83,14 +81,10 @@ impl CaseArrays {
         self.history.end_row()
     }
 
-    /// Appends a row to the fields; returns whether that filled a chunk.
+    /// Appends a row to the fields.
     ///
     /// `values`: per line (quantities x nodes).
-    pub(crate) fn push_fields(
-        &mut self,
-        time: f64,
-        values: &[Vec<f64>],
-    ) -> Result<bool, StoreError> {
+    pub(crate) fn push_fields(&mut self, time: f64, values: &[Vec<f64>]) -> Result<(), StoreError> {
         for (line, values) in self.lines.iter().zip(values) {
             self.fields.push(line.time_column, &[time]);
             for (quantity, column) in &line.fields {
@@ -103,7 +97,7 @@ impl CaseArrays {
 
 impl LineArrays {
     fn create(
-        case: &Path,
+        case: &Place,
         model: &Model,
         line: &Line,
         chunk_rows: usize,
@@ -113,11 +107,11 @@ impl LineArrays {
         attributes.insert("name".into(), line.name.as_str().into());
         attributes.insert("length_m".into(), line.length().into());
         attributes.insert("elements".into(), line.element_count().into());
-        let group = Group::create(layout::line_path(case, &line.name), &attributes)?;
+        let group = Group::create(layout::line_place(case, &line.name), &attributes)?;
         let arc_length = node_arc_length(line);
         let nodes = arc_length.len();
         Array::create(
-            group.path().join("arc_length"),
+            group.place().join("arc_length"),
             FloatKind::F64,
             ArrayShape::vector(nodes, "arc_length"),
             array_attributes("m", "unstretched distance from end A"),
@@ -125,7 +119,7 @@ impl LineArrays {
         .write_all(&arc_length)?;
         let rows = series.planned_rows();
         let time_array = Array::create(
-            group.path().join("field_time"),
+            group.place().join("field_time"),
             FloatKind::F64,
             ArrayShape {
                 rows,
@@ -152,8 +146,8 @@ impl LineArrays {
                 dimensions: vec!["field_time".into(), "arc_length".into()],
             };
             let attributes = array_attributes(quantity.unit(), &long_name(quantity));
-            let path = group.path().join(quantity.name());
-            let array = Array::create(path, FloatKind::F32, shape, attributes)?;
+            let place = group.place().join(quantity.name());
+            let array = Array::create(place, FloatKind::F32, shape, attributes)?;
             fields.push((quantity, series.add_values(array)));
         }
         Ok(LineArrays {
@@ -247,7 +241,7 @@ impl LineArrays {
         values: &[f64],
     ) -> Result<(), StoreError> {
         Array::create(
-            self.group.path().join(name),
+            self.group.place().join(name),
             FloatKind::F64,
             ArrayShape::vector(values.len(), "arc_length"),
             array_attributes(quantity.unit(), text),
@@ -257,7 +251,7 @@ impl LineArrays {
 }
 
 fn create_history(
-    case: &Path,
+    case: &Place,
     times: Vec<f64>,
     channels: &[Channel],
 ) -> Result<Series, StoreError> {
@@ -278,9 +272,9 @@ fn create_history(
     for channel in channels {
         let mut attributes = array_attributes(channel.unit, &channel.name.replace(['.', '_'], " "));
         attributes.insert("channel".into(), channel.name.as_str().into());
-        let path = case.join(component(&channel.name));
+        let place = case.join(&component(&channel.name));
         series.add_values(Array::create(
-            path,
+            place,
             FloatKind::F64,
             shape.clone(),
             attributes,

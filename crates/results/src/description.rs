@@ -5,10 +5,10 @@ use std::path::Path;
 use catenix_model::LineQuantity;
 use serde::Serialize;
 
-use crate::layout::{self, FIELD_ROWS_KEY, HISTORY_ROWS_KEY, RANGE_SUFFIXES};
+use crate::layout::{self, FIELD_ROWS_KEY, HISTORY_ROWS_KEY, RANGE_SUFFIXES, component};
 use crate::scene::Scene;
-use crate::store_reader::{StoredCase, rows, status, subdirectories, text};
-use crate::zarr::{Array, Group};
+use crate::store_reader::{StoredCase, rows, status, text};
+use crate::zarr::{Array, Group, Place};
 use crate::{CaseError, CaseSummary, Status, StoreError, StoredStudy};
 
 /// How far a case has come.
@@ -49,10 +49,12 @@ pub struct CaseDescription {
 }
 
 /// An array and its chunks: files `c/0`, `c/1`, ... (`c/0/0`, `c/1/0`, ... with columns) below
-/// `path`, each `chunk_rows` x `columns` little-endian floats and a CRC-32C.
+/// `path`, each `chunk_rows` x `columns` little-endian floats and a CRC-32C. [`stored_file`] reads
+/// them, wherever they lie.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ArrayPlace {
-    /// Folder, from the store, with forward slashes.
+    /// Way from the store, with forward slashes: `cases`, the case as its folder is named, and so
+    /// on.
     pub path: String,
     /// `float32` or `float64`.
     pub data_type: &'static str,
@@ -113,18 +115,51 @@ impl StoredStudy {
     }
 }
 
-/// The first `rows` values of the array with one axis that lies in `directory`; fewer where it is
-/// shorter. Its chunks are small and many, so that a run can write them as it goes: whoever wants
-/// the whole array would have to ask for each of them.
-pub fn read_vector(directory: &Path, rows: usize) -> Result<Vec<f64>, StoreError> {
-    let array = Array::open(directory.to_path_buf())?;
+/// The first `rows` values of an array with one axis; fewer where it is shorter, and `None` where
+/// there is nothing. Its chunks are small and many, so that a run can write them as it goes:
+/// whoever wants the whole array would have to ask for each of them.
+///
+/// `store` is the study's path, `way` that of the array from there, as in [`ArrayPlace::path`].
+pub fn read_vector(
+    store: &Path,
+    way: &[String],
+    rows: usize,
+) -> Result<Option<Vec<f64>>, StoreError> {
+    let place = place_of(store, way)?;
+    if !place.is_node() {
+        return Ok(None);
+    }
+    let array = Array::open(place)?;
     if array.shape().columns.is_some() {
         return Err(StoreError::Damaged {
-            path: directory.to_path_buf(),
+            path: store.join(way.join("/")),
             what: "the array has two axes where one is expected".to_owned(),
         });
     }
-    array.read_rows(0, rows)
+    array.read_rows(0, rows).map(Some)
+}
+
+/// A file of a case, as its folder has or would have it; `None` where there is no such file.
+///
+/// `store` is the study's path, `way` that of the file from there.
+pub fn stored_file(store: &Path, way: &[String]) -> Result<Option<Vec<u8>>, StoreError> {
+    let place = place_of(store, way)?;
+    // A whole archive, for one, is no file of a case.
+    if way.last().is_none_or(|name| name.ends_with(".zip")) {
+        return Ok(None);
+    }
+    place.read()
+}
+
+/// The node or file at the end of a way, in the archive of its case where there is one.
+fn place_of(store: &Path, way: &[String]) -> Result<Place, StoreError> {
+    let cases = layout::cases_path(store);
+    match way {
+        [first, case, rest @ ..] if !rest.is_empty() && cases.ends_with(first) => {
+            Ok(Place::stored(cases.join(case))?.join(&rest.join("/")))
+        }
+        _ => Ok(Place::folder(store.to_path_buf()).join(&way.join("/"))),
+    }
 }
 
 impl StoredCase {
@@ -148,8 +183,8 @@ impl StoredCase {
         })
     }
 
-    /// Everything that the case has, and where. `store` is the study's path.
-    pub fn describe(&self, store: &Path) -> Result<CaseDescription, StoreError> {
+    /// Everything that the case has, and where.
+    pub fn describe(&self) -> Result<CaseDescription, StoreError> {
         let progress = self.progress()?;
         let attributes = self.group().attributes()?;
         let scene: Option<Scene> = serde_json::from_str(&text(&attributes, layout::SCENE_KEY)).ok();
@@ -157,10 +192,10 @@ impl StoredCase {
         let window_s = serde_json::from_str::<CaseSummary>(&summary)
             .ok()
             .and_then(|summary| summary.window_s);
-        let case = self.group().path();
+        let case = self.group().place();
         let mut lines = Vec::new();
-        for directory in subdirectories(&layout::lines_path(case))? {
-            if let Some(line) = line_place(store, &directory)? {
+        for place in layout::lines_place(case).children()? {
+            if let Some(line) = self.line_place(&place)? {
                 lines.push(line);
             }
         }
@@ -172,18 +207,18 @@ impl StoredCase {
             progress,
             scene,
             window_s,
-            time: optional_place(store, &case.join("time"))?,
-            channels: self.channel_places(store)?,
+            time: self.optional_place(&case.join("time"))?,
+            channels: self.channel_places()?,
             lines,
         })
     }
 
-    fn channel_places(&self, store: &Path) -> Result<Vec<ChannelPlace>, StoreError> {
+    fn channel_places(&self) -> Result<Vec<ChannelPlace>, StoreError> {
         let mut channels = Vec::new();
-        for directory in subdirectories(self.group().path())? {
+        for place in self.group().place().children()? {
             // The time axis and the group of the lines have no channel name; an array that is being
             // made has no metadata yet.
-            let Ok(array) = Array::open(directory.clone()) else {
+            let Ok(array) = Array::open(place.clone()) else {
                 continue;
             };
             let name = text(array.attributes(), "channel");
@@ -191,66 +226,62 @@ impl StoredCase {
                 channels.push(ChannelPlace {
                     name,
                     unit: text(array.attributes(), "units"),
-                    array: place(store, &directory, &array),
+                    array: self.array_place(&place, &array),
                 });
             }
         }
         channels.sort_by(|a, b| a.name.cmp(&b.name));
         Ok(channels)
     }
-}
 
-/// A line's arrays; `None` while they are being made.
-fn line_place(store: &Path, directory: &Path) -> Result<Option<LinePlace>, StoreError> {
-    let arc_length = optional_place(store, &directory.join("arc_length"))?;
-    let field_time = optional_place(store, &directory.join("field_time"))?;
-    let (Some(arc_length), Some(field_time)) = (arc_length, field_time) else {
-        return Ok(None);
-    };
-    let mut quantities = Vec::new();
-    for quantity in LineQuantity::ALL {
-        let name = quantity.name();
-        let Some(field) = optional_place(store, &directory.join(name))? else {
-            continue;
+    /// A line's arrays; `None` while they are being made.
+    fn line_place(&self, line: &Place) -> Result<Option<LinePlace>, StoreError> {
+        let arc_length = self.optional_place(&line.join("arc_length"))?;
+        let field_time = self.optional_place(&line.join("field_time"))?;
+        let (Some(arc_length), Some(field_time)) = (arc_length, field_time) else {
+            return Ok(None);
         };
-        let written = |suffix: &str| {
-            let array = directory.join(format!("{name}_{suffix}"));
-            array.join("c").join("0").is_file()
-        };
-        let static_state = directory.join(format!("static_{name}"));
-        quantities.push(QuantityPlace {
-            name,
-            unit: quantity.unit(),
-            long_name: layout::long_name(quantity),
-            field,
-            static_state: optional_place(store, &static_state)?,
-            has_range_graph: RANGE_SUFFIXES.into_iter().all(written),
-        });
+        let mut quantities = Vec::new();
+        for quantity in LineQuantity::ALL {
+            let name = quantity.name();
+            let Some(field) = self.optional_place(&line.join(name))? else {
+                continue;
+            };
+            let written = |suffix: &str| line.join(&format!("{name}_{suffix}/c/0")).is_file();
+            let static_state = line.join(&format!("static_{name}"));
+            quantities.push(QuantityPlace {
+                name,
+                unit: quantity.unit(),
+                long_name: layout::long_name(quantity),
+                field,
+                static_state: self.optional_place(&static_state)?,
+                has_range_graph: RANGE_SUFFIXES.into_iter().all(written),
+            });
+        }
+        Ok(Some(LinePlace {
+            name: text(&Group::at(line.clone()).attributes()?, "name"),
+            arc_length,
+            field_time,
+            quantities,
+        }))
     }
-    Ok(Some(LinePlace {
-        name: text(&Group::at(directory.to_path_buf()).attributes()?, "name"),
-        arc_length,
-        field_time,
-        quantities,
-    }))
-}
 
-fn optional_place(store: &Path, directory: &Path) -> Result<Option<ArrayPlace>, StoreError> {
-    if !directory.join("zarr.json").is_file() {
-        return Ok(None);
+    fn optional_place(&self, place: &Place) -> Result<Option<ArrayPlace>, StoreError> {
+        if !place.is_node() {
+            return Ok(None);
+        }
+        let array = Array::open(place.clone())?;
+        Ok(Some(self.array_place(place, &array)))
     }
-    let array = Array::open(directory.to_path_buf())?;
-    Ok(Some(place(store, directory, &array)))
-}
 
-fn place(store: &Path, directory: &Path, array: &Array) -> ArrayPlace {
-    let inside = directory.strip_prefix(store).unwrap_or(directory);
-    let names: Vec<_> = inside.iter().map(|name| name.to_string_lossy()).collect();
-    ArrayPlace {
-        path: names.join("/"),
-        data_type: array.kind().name(),
-        rows: array.shape().rows,
-        columns: array.shape().columns,
-        chunk_rows: array.shape().chunk_rows,
+    fn array_place(&self, place: &Place, array: &Array) -> ArrayPlace {
+        let case = component(self.name());
+        ArrayPlace {
+            path: format!("cases/{case}/{}", place.inside()),
+            data_type: array.kind().name(),
+            rows: array.shape().rows,
+            columns: array.shape().columns,
+            chunk_rows: array.shape().chunk_rows,
+        }
     }
 }

@@ -50,8 +50,8 @@ impl StoredCase {
     /// Whether the static state has been found and stored.
     pub fn has_results(&self) -> Result<bool, StoreError> {
         let attributes = self.group().attributes()?;
-        let lines = layout::lines_path(self.group().path());
-        Ok(rows(&attributes, HISTORY_ROWS_KEY) > 0 || lines.is_dir())
+        let lines = layout::lines_place(self.group().place());
+        Ok(rows(&attributes, HISTORY_ROWS_KEY) > 0 || lines.is_node())
     }
 
     /// What the case looks like; `None` in stores of earlier versions.

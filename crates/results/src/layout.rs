@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use catenix_model::{LineQuantity, LoadCase};
 
 use crate::summarise::{CaseLayout, LineLayout, ReferenceLayout};
-use crate::zarr::Attributes;
+use crate::zarr::{Attributes, Place};
 
 /// Format number of the stores that this version writes, and the highest that it reads.
-pub const STORE_FORMAT: u64 = 1;
+pub const STORE_FORMAT: u64 = 2;
 
 /// Name of the store inside an output directory.
 pub const STORE_NAME: &str = "results.zarr";
@@ -36,34 +36,38 @@ pub(crate) fn cases_path(store: &Path) -> PathBuf {
     store.join("cases")
 }
 
-/// Directory of a load case's group.
+/// Directory of a load case's group; when the case has ended, an archive stands in its place.
 pub(crate) fn case_path(store: &Path, case: &str) -> PathBuf {
     cases_path(store).join(component(case))
 }
 
-/// Directory of the group that holds a case's lines.
-pub(crate) fn lines_path(case: &Path) -> PathBuf {
+/// The group that holds a case's lines.
+pub(crate) fn lines_place(case: &Place) -> Place {
     case.join("lines")
 }
 
-/// Directory of a line's group.
-pub(crate) fn line_path(case: &Path, line: &str) -> PathBuf {
-    lines_path(case).join(component(line))
+/// A line's group.
+pub(crate) fn line_place(case: &Place, line: &str) -> Place {
+    lines_place(case).join(&component(line))
 }
 
-/// Directory of the group that holds a case's natural modes.
-pub(crate) fn modes_path(case: &Path) -> PathBuf {
+/// The group that holds a case's natural modes.
+pub(crate) fn modes_place(case: &Place) -> Place {
     case.join("modes")
 }
 
 /// A name as one component of a path: what a file system or Zarr could take for more than a name
-/// is written as `%` and two hexadecimal digits, as in a URL.
+/// is written as `%` and two hexadecimal digits, as in a URL. A name does not end as those of
+/// archives do.
 pub fn component(name: &str) -> String {
     let mut encoded = String::with_capacity(name.len());
     for (index, character) in name.chars().enumerate() {
         let hostile = character.is_control()
             || "/\\%:*?\"<>|".contains(character)
-            || (character == '.' && (index == 0 || name == "zarr.json"))
+            || (character == '.'
+                && (index == 0
+                    || name == "zarr.json"
+                    || name.as_bytes()[index..].eq_ignore_ascii_case(b".zip")))
             || (character == '_' && index == 0);
         if hostile {
             let mut buffer = [0; 4];
@@ -147,5 +151,6 @@ mod tests {
         assert_eq!(component("../a/b%"), "%2E.%2Fa%2Fb%25");
         assert_eq!(component("软管"), "软管");
         assert_eq!(component("zarr.json"), "zarr%2Ejson");
+        assert_eq!(component("a.zip.Zip"), "a.zip%2EZip");
     }
 }

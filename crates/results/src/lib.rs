@@ -41,6 +41,7 @@ mod zarr;
 pub use curve::{Curve, OutputTimes};
 pub use description::{
     ArrayPlace, CaseDescription, CaseProgress, ChannelPlace, LinePlace, QuantityPlace, read_vector,
+    stored_file,
 };
 pub use details::{Setting, SettingValue};
 pub use envelope::Envelope;

@@ -122,12 +122,12 @@ impl CaseModes {
              where the mode is mostly torsion or rotation"
                 .into(),
         );
-        let group = Group::create(layout::modes_path(case.path()), &attributes)?;
+        let group = Group::create(layout::modes_place(case.place()), &attributes)?;
         let modes = &report.modes;
         let column = |name: &str, units: &str, text: &str, value: &dyn Fn(&ModeReport) -> f64| {
             let values: Vec<f64> = modes.iter().map(value).collect();
             Array::create(
-                group.path().join(name),
+                group.place().join(name),
                 FloatKind::F64,
                 ArrayShape::vector(values.len(), "mode"),
                 array_attributes(units, text),
@@ -158,7 +158,7 @@ impl CaseModes {
             })?;
         }
         for (folder, shapes) in [("lines", &self.lines), ("bodies", &self.bodies)] {
-            let folder = Group::create(group.path().join(folder), &Attributes::new())?;
+            let folder = Group::create(group.place().join(folder), &Attributes::new())?;
             for shape in shapes {
                 shape.write(&folder, modes)?;
             }
@@ -171,12 +171,12 @@ impl ModeShapes {
     fn write(&self, folder: &Group, modes: &[ModeReport]) -> Result<(), StoreError> {
         let mut attributes = Attributes::new();
         attributes.insert("name".into(), self.name.as_str().into());
-        let path = folder.path().join(layout::component(&self.name));
-        let group = Group::create(path, &attributes)?;
+        let place = folder.place().join(&layout::component(&self.name));
+        let group = Group::create(place, &attributes)?;
         let numbers: Vec<f64> = modes.iter().map(|mode| mode.number as f64).collect();
         let vector = |name: &str, values: &[f64], units: &str, text: &str| {
             Array::create(
-                group.path().join(name),
+                group.place().join(name),
                 FloatKind::F64,
                 ArrayShape::vector(values.len(), name),
                 array_attributes(units, text),
@@ -205,7 +205,7 @@ impl ModeShapes {
                 shape.dimensions.push("arc_length".to_owned());
             }
             Array::create(
-                group.path().join(name),
+                group.place().join(name),
                 FloatKind::F64,
                 shape,
                 array_attributes(units, &format!("{text}, of the mode")),

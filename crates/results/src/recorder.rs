@@ -102,7 +102,7 @@ impl CaseRecorder {
         case: &LoadCase,
         sample: &impl Sample,
     ) -> Result<(), StoreError> {
-        let mut arrays = CaseArrays::create(self.group.path(), &case.model, &self.channels)?;
+        let mut arrays = CaseArrays::create(self.group.place(), &case.model, &self.channels)?;
         for (line, arrays) in arrays.lines.iter().enumerate() {
             sample.line_quantities(line, &mut self.line_values[line]);
             arrays.write_static(&self.line_values[line])?;
@@ -112,7 +112,7 @@ impl CaseRecorder {
             self.add_sample(&mut arrays, sample, true)?;
         }
         self.arrays = Some(arrays);
-        self.flush()
+        self.flush_if_due()
     }
 
     /// Records the natural modes about the static state.
@@ -131,15 +131,11 @@ impl CaseRecorder {
         let in_window = sample.time() >= self.window_start_s - time_tolerance(self.duration_s);
         let result = self.add_sample(&mut arrays, sample, in_window);
         self.arrays = Some(arrays);
-        let chunk_written = result?;
-        if chunk_written || self.last_flush.elapsed() >= FLUSH_INTERVAL {
-            self.flush()?;
-        }
-        Ok(())
+        result?;
+        self.flush_if_due()
     }
 
-    /// Evaluates a sample and stores the rows that it makes known; returns whether a chunk was
-    /// filled.
+    /// Evaluates a sample and stores the rows that it makes known.
     ///
     /// Every sample is evaluated as a whole, because every one may hold an extreme of the run. Along
     /// the 290 elements of the sea trial this takes some 30 microseconds, a twentieth of a step.
@@ -148,7 +144,7 @@ impl CaseRecorder {
         arrays: &mut CaseArrays,
         sample: &impl Sample,
         in_window: bool,
-    ) -> Result<bool, StoreError> {
+    ) -> Result<(), StoreError> {
         let time = sample.time();
         for (value, channel) in self.channel_values.iter_mut().zip(&self.channels) {
             *value = sample.channel(channel.target);
@@ -171,36 +167,45 @@ impl CaseRecorder {
         self.write_rows(arrays, known, time)
     }
 
-    /// Writes the rows up to a time, and one at the latest sample if that is the next; returns
-    /// whether a chunk was filled.
+    /// Writes the rows up to a time, and one at the latest sample if that is the next.
     fn write_rows(
         &mut self,
         arrays: &mut CaseArrays,
         known: f64,
         latest: f64,
-    ) -> Result<bool, StoreError> {
-        let mut chunk_written = false;
+    ) -> Result<(), StoreError> {
         while let Some(time) = self.history_times.due(known, latest) {
             self.channel_curve.at(time, &mut self.channel_values);
-            chunk_written |= arrays.push_history(time, &self.channel_values)?;
+            arrays.push_history(time, &self.channel_values)?;
         }
         while let Some(time) = self.field_times.due(known, latest) {
             for (curve, values) in self.line_curves.iter().zip(&mut self.line_values) {
                 curve.at(time, values);
             }
-            chunk_written |= arrays.push_fields(time, &self.line_values)?;
+            arrays.push_fields(time, &self.line_values)?;
         }
-        Ok(chunk_written)
+        Ok(())
     }
 
-    /// Brings the store up to date: first the data, then the attributes that count the rows.
-    fn flush(&mut self) -> Result<(), StoreError> {
+    /// Brings the folder of the case up to date where that has not been done for a while. A case
+    /// that is done before has no folder, only its archive.
+    fn flush_if_due(&mut self) -> Result<(), StoreError> {
+        if self.last_flush.elapsed() >= FLUSH_INTERVAL || self.group.place().is_full() {
+            self.flush()?;
+        }
+        Ok(())
+    }
+
+    /// Brings the folder of the case up to date: first the data, then the attributes that count the
+    /// rows. While samples come in this happens by itself every few seconds.
+    pub fn flush(&mut self) -> Result<(), StoreError> {
         if let Some(mut arrays) = self.arrays.take() {
             let flushed = arrays.history.flush().and_then(|()| arrays.fields.flush());
             let written = flushed.and_then(|()| self.write_attributes(&arrays));
             self.arrays = Some(arrays);
             written?;
         }
+        self.group.place().flush()?;
         self.last_flush = Instant::now();
         Ok(())
     }
@@ -256,6 +261,7 @@ impl CaseRecorder {
         self.attributes
             .insert(layout::SUMMARY_KEY.into(), text.into());
         self.group.set_attributes(&self.attributes)?;
+        self.group.place().pack()?;
         Ok(summary)
     }
 

@@ -63,7 +63,7 @@ impl StoredCase {
     }
 
     fn history_rows(&self, folder: &str) -> Result<StoredRows, StoreError> {
-        let array = Array::open(self.group().path().join(folder))?;
+        let array = Array::open(self.group().place().join(folder))?;
         Ok(StoredRows { array })
     }
 

@@ -63,15 +63,13 @@ impl Series {
         self.columns[column].buffer.extend_from_slice(values);
     }
 
-    /// Ends the row, after every column has got its values. A chunk that is full is written; returns
-    /// whether one was.
-    pub(crate) fn end_row(&mut self) -> Result<bool, StoreError> {
+    /// Ends the row, after every column has got its values. A chunk that is full is written.
+    pub(crate) fn end_row(&mut self) -> Result<(), StoreError> {
         self.rows += 1;
-        let full = self.rows.is_multiple_of(self.chunk_rows);
-        if full {
+        if self.rows.is_multiple_of(self.chunk_rows) {
             self.flush()?;
         }
-        Ok(full)
+        Ok(())
     }
 
     /// Writes the rows that are not on disk yet.

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::date::utc_text;
 use crate::layout::{self, STORE_FORMAT, STORE_NAME};
 use crate::summary::Status;
-use crate::zarr::{Attributes, Group, write_atomically};
+use crate::zarr::{Attributes, Group, Place, write_atomically};
 use crate::{CaseRecorder, Scene, StoreError, Summary};
 
 /// Where results come from.
@@ -39,6 +39,7 @@ impl Provenance {
 #[derive(Debug)]
 pub struct ResultStore {
     directory: PathBuf,
+    path: PathBuf,
     group: Group,
     attributes: Attributes,
 }
@@ -71,27 +72,30 @@ impl ResultStore {
         attributes.insert(layout::STATUS_KEY.into(), Status::Running.word().into());
         let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
         attributes.insert("case_names".into(), names.into());
-        let group = Group::create(directory.join(STORE_NAME), &attributes)?;
-        Group::create(layout::cases_path(group.path()), &Attributes::new())?;
+        let group = Group::create(Place::folder(directory.join(STORE_NAME)), &attributes)?;
+        let path = directory.join(STORE_NAME);
+        Group::create(Place::folder(layout::cases_path(&path)), &Attributes::new())?;
         let store = ResultStore {
             directory: directory.to_path_buf(),
+            path,
             group,
             attributes,
         };
         for case in cases {
-            Group::create(store.case_path(case), &case_attributes(case))?;
+            let place = Place::folder(store.case_path(case));
+            Group::create(place, &case_attributes(case))?;
         }
         Ok(store)
     }
 
     /// Path of the store.
     pub fn path(&self) -> &Path {
-        self.group.path()
+        &self.path
     }
 
     /// Begins a load case. Cases may be recorded on several threads at once.
     pub fn record_case(&self, case: &LoadCase) -> CaseRecorder {
-        let group = Group::at(self.case_path(case));
+        let group = Group::at(Place::staged(self.case_path(case)));
         CaseRecorder::new(group, case_attributes(case), case)
     }
 
@@ -107,7 +111,7 @@ impl ResultStore {
     }
 
     fn case_path(&self, case: &LoadCase) -> PathBuf {
-        layout::case_path(self.group.path(), &case.name)
+        layout::case_path(&self.path, &case.name)
     }
 }
 
@@ -146,7 +150,7 @@ fn clear(directory: &Path) -> Result<(), StoreError> {
     }
     if store.exists() {
         // A store whose very first write was cut off has no readable zarr.json, and nothing else.
-        let ours = match Group::at(store.clone()).attributes() {
+        let ours = match Group::at(Place::folder(store.clone())).attributes() {
             Ok(attributes) => attributes.contains_key(layout::FORMAT_KEY),
             Err(_) => only_partial_files(&store),
         };

@@ -1,6 +1,5 @@
 //! Reads a result store: finished, interrupted, or cut off at any moment.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use catenix_model::LineQuantity;
@@ -14,7 +13,7 @@ use crate::store::StoredFigure;
 use crate::stored_statistics::StoredStatistics;
 use crate::summarise::CaseLayout;
 use crate::summary::Status;
-use crate::zarr::{Array, Attributes, Group};
+use crate::zarr::{Array, Attributes, Group, Place};
 use crate::{CaseSummary, Extremes, RangeGraph, StoreError, Summary};
 
 /// A result store on disk, opened for reading.
@@ -68,7 +67,7 @@ impl StoredStudy {
         if !path.join("zarr.json").is_file() {
             return Err(StoreError::NoStore { path });
         }
-        let attributes = Group::at(path.clone()).attributes()?;
+        let attributes = Group::at(Place::folder(path.clone())).attributes()?;
         let format = attributes.get(FORMAT_KEY).and_then(Value::as_u64);
         match format {
             None => return Err(StoreError::NoStore { path }),
@@ -142,8 +141,8 @@ impl StoredStudy {
                 available: self.case_names.join(", "),
             });
         }
-        let group = Group::at(layout::case_path(&self.path, name));
-        Ok(StoredCase::new(group, name.to_owned()))
+        let place = Place::stored(layout::case_path(&self.path, name))?;
+        Ok(StoredCase::new(Group::at(place), name.to_owned()))
     }
 
     /// The summary of the study, also of one that was cut off.
@@ -207,9 +206,9 @@ impl StoredCase {
     /// Names of the channels, sorted.
     pub fn channel_names(&self) -> Result<Vec<String>, StoreError> {
         let mut names = Vec::new();
-        for directory in subdirectories(self.group.path())? {
+        for place in self.group.place().children()? {
             // The time axis and the group of the lines have no channel name.
-            if let Ok(array) = Array::open(directory)
+            if let Ok(array) = Array::open(place)
                 && let Some(name) = array.attributes().get("channel").and_then(Value::as_str)
             {
                 names.push(name.to_owned());
@@ -221,17 +220,17 @@ impl StoredCase {
 
     /// A time history, as far as it was written.
     pub fn channel(&self, name: &str) -> Result<History, StoreError> {
-        let path = self.group.path().join(component(name));
-        if !path.join("zarr.json").is_file() {
+        let place = self.group.place().join(&component(name));
+        if !place.is_node() {
             return Err(StoreError::UnknownChannel {
                 case: self.name.clone(),
                 name: name.to_owned(),
                 similar: self.nearest_channel(name),
             });
         }
-        let array = Array::open(path)?;
+        let array = Array::open(place)?;
         let rows = rows(&self.group.attributes()?, layout::HISTORY_ROWS_KEY);
-        let times = Array::open(self.group.path().join("time"))?;
+        let times = Array::open(self.group.place().join("time"))?;
         Ok(History {
             unit: text(array.attributes(), "units"),
             times_s: times.read_rows(0, rows)?,
@@ -254,8 +253,8 @@ impl StoredCase {
     /// Names of the lines, sorted.
     pub fn line_names(&self) -> Result<Vec<String>, StoreError> {
         let mut names = Vec::new();
-        for directory in subdirectories(&layout::lines_path(self.group.path()))? {
-            names.push(text(&Group::at(directory).attributes()?, "name"));
+        for place in layout::lines_place(self.group.place()).children()? {
+            names.push(text(&Group::at(place).attributes()?, "name"));
         }
         names.sort();
         Ok(names)
@@ -349,20 +348,20 @@ impl StoredCase {
         window_s: f64,
     ) -> Result<StoredStatistics<'_>, StoreError> {
         let rows = rows(&self.group.attributes()?, layout::HISTORY_ROWS_KEY);
-        let times = Array::open(self.group.path().join("time"))?.read_rows(0, rows)?;
+        let times = Array::open(self.group.place().join("time"))?.read_rows(0, rows)?;
         Ok(StoredStatistics::new(self, &times, window_s))
     }
 
     pub(crate) fn line_array(&self, line: &str, name: &str) -> Result<Array, StoreError> {
-        let path = layout::line_path(self.group.path(), line).join(name);
-        if !path.join("zarr.json").is_file() {
+        let place = layout::line_place(self.group.place(), line).join(name);
+        if !place.is_node() {
             return Err(StoreError::UnknownLineResult {
                 case: self.name.clone(),
                 line: line.to_owned(),
                 quantity: name.to_owned(),
             });
         }
-        Array::open(path)
+        Array::open(place)
     }
 
     /// The channel whose name shares the longest beginning with `name`.
@@ -383,7 +382,7 @@ impl StoredCase {
 
     pub(crate) fn damaged(&self, what: &str) -> StoreError {
         StoreError::Damaged {
-            path: self.group.path().to_path_buf(),
+            path: self.group.place().path(),
             what: what.to_owned(),
         }
     }
@@ -404,16 +403,4 @@ pub(crate) fn text(attributes: &Attributes, key: &str) -> String {
         .and_then(Value::as_str)
         .unwrap_or_default()
         .to_owned()
-}
-
-pub(crate) fn subdirectories(path: &Path) -> Result<Vec<PathBuf>, StoreError> {
-    let entries = match fs::read_dir(path) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
-        other => other.map_err(|source| StoreError::read(path, source))?,
-    };
-    Ok(entries
-        .flatten()
-        .map(|entry| entry.path())
-        .filter(|path| path.is_dir())
-        .collect())
 }

@@ -4,12 +4,16 @@ usage: read_back.py DIR, where DIR was filled by `cargo run -p catenix-results -
 synthetic_store -- DIR`. Needs xarray and zarr 3. The formulas are those of tests/common/mod.rs.
 """
 
+import shutil
 import sys
+import tempfile
 import warnings
+import zipfile
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
+import zarr
 
 QUANTITIES = [
     "x", "y", "z", "effective_tension", "wall_tension", "shear_force", "bend_moment",
@@ -21,8 +25,12 @@ def line_value(quantity: str, node, time):
     return 1000.0 * QUANTITIES.index(quantity) + 100.0 * node + time
 
 
+def archive(store: Path, case: str) -> zarr.storage.ZipStore:
+    return zarr.storage.ZipStore(store / "cases" / f"{case}.zip", mode="r")
+
+
 def check_complete(store: Path) -> None:
-    case = xr.open_zarr(store, group="cases/a", consolidated=False)
+    case = xr.open_zarr(archive(store, "a"), consolidated=False)
     assert case["time"].dims == ("time",) and case["time"].attrs["units"] == "s"
     np.testing.assert_array_equal(case["time"], np.arange(81) * 0.25)
     offset = case["buffer.offset_x"]
@@ -33,7 +41,7 @@ def check_complete(store: Path) -> None:
     assert case.attrs["solver_steps"] == 80
     assert float(offset.sel(time=slice(12.0, 20.0)).mean()) == -26.0
 
-    line = xr.open_zarr(store, group="cases/a/lines/pipe", consolidated=False)
+    line = xr.open_zarr(archive(store, "a"), group="lines/pipe", consolidated=False)
     np.testing.assert_array_equal(line["arc_length"], [0.0, 10.0, 20.0, 30.0])
     np.testing.assert_array_equal(line["field_time"], np.arange(21.0))
     node = np.arange(4)
@@ -52,15 +60,15 @@ def check_complete(store: Path) -> None:
 
 
 def check_modes(store: Path) -> None:
-    modes = xr.open_zarr(store, group="cases/a/modes", consolidated=False)
+    modes = xr.open_zarr(archive(store, "a"), group="modes", consolidated=False)
     np.testing.assert_array_equal(modes["mode"], [1.0, 2.0, 3.0])
     assert modes["frequency"].attrs["units"] == "Hz"
     np.testing.assert_array_equal(modes["frequency"].sel(mode=[2, 3]), [0.5, 1.0])
     np.testing.assert_array_equal(modes["effective_mass_z"], [3.0, 6.0, 9.0])
     assert np.isnan(modes["damping_ratio"][0])
     assert modes.attrs["counted"] == 3 and modes.attrs["total_mass_kg"] == [10.0, 20.0, 30.0]
-    line = xr.open_zarr(store, group="cases/a/modes/lines/pipe", consolidated=False)
-    body = xr.open_zarr(store, group="cases/a/modes/bodies/buffer", consolidated=False)
+    line = xr.open_zarr(archive(store, "a"), group="modes/lines/pipe", consolidated=False)
+    body = xr.open_zarr(archive(store, "a"), group="modes/bodies/buffer", consolidated=False)
     mode, node = np.arange(1, 4)[:, None], np.arange(4)[None, :]
     for part, unit in [("displacement", "m"), ("rotation", "rad")]:
         for axis in range(3):
@@ -75,7 +83,7 @@ def check_modes(store: Path) -> None:
 
 
 def check_interrupted(store: Path) -> None:
-    case = xr.open_zarr(store, group="cases/b", consolidated=False)
+    case = xr.open_zarr(archive(store, "b"), consolidated=False)
     assert case.attrs["status"] == "interrupted"
     assert case.sizes["time"] == 41
     assert not case["buffer.offset_x"].isnull().any()
@@ -94,11 +102,29 @@ def check_killed(store: Path) -> None:
 
 
 def check_tree(store: Path) -> None:
-    tree = xr.open_datatree(store, engine="zarr", consolidated=False)
-    assert tree.attrs["catenix_store_format"] == 1
-    assert tree.attrs["case_names"] == ["a", "b"]
-    assert tree["cases/b/lines/pipe/effective_tension"].shape == (21, 4)
-    assert len(tree.attrs["model_sha256"]) == 64
+    study = zarr.open_group(store, mode="r", use_consolidated=False)
+    assert study.attrs["catenix_store_format"] == 2
+    assert study.attrs["case_names"] == ["a", "b"]
+    assert len(study.attrs["model_sha256"]) == 64
+    cases = {
+        name: xr.open_datatree(archive(store, name), engine="zarr", consolidated=False)
+        for name in study.attrs["case_names"]
+    }
+    assert cases["b"]["lines/pipe/effective_tension"].shape == (21, 4)
+
+
+def check_unpacked(store: Path) -> None:
+    """Cases that are laid out as folders are groups of the store."""
+    with tempfile.TemporaryDirectory() as directory:
+        copy = Path(shutil.copytree(store, Path(directory) / "copy.zarr"))
+        for archive in list((copy / "cases").glob("*.zip")):
+            with zipfile.ZipFile(archive) as packed:
+                assert packed.testzip() is None
+                packed.extractall(archive.with_suffix(""))
+            archive.unlink()
+        tree = xr.open_datatree(copy, engine="zarr", consolidated=False)
+        assert tree.attrs["case_names"] == ["a", "b"]
+        assert tree["cases/b/lines/pipe/effective_tension"].shape == (21, 4)
 
 
 def main() -> None:
@@ -108,6 +134,7 @@ def main() -> None:
     check_complete(complete)
     check_modes(complete)
     check_tree(complete)
+    check_unpacked(complete)
     check_interrupted(directory / "interrupted" / "results.zarr")
     check_killed(directory / "killed" / "results.zarr")
     print("read_back: xarray", xr.__version__, "reads the stores as written")

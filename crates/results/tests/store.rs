@@ -6,7 +6,9 @@ use std::fs;
 
 use catenix_model::LineQuantity;
 use catenix_results::{ResultStore, Status, StoreError, StoredStudy};
-use common::{DURATION_S, ELEMENTS, Moment, STEP_S, WINDOW_S, line_value, study, write_store};
+use common::{
+    DURATION_S, ELEMENTS, Moment, STEP_S, WINDOW_S, line_value, study, unpack, write_store,
+};
 
 #[test]
 fn a_complete_run_reads_back_as_it_was_written() {
@@ -147,6 +149,42 @@ fn a_killed_run_keeps_what_was_flushed() {
 }
 
 #[test]
+fn a_case_that_has_ended_is_one_file() {
+    let dir = tempfile::tempdir().unwrap();
+    let study = study(&["a", "b.zip"]);
+    write_store(dir.path(), &study, DURATION_S, Status::Complete);
+    let names = |folder: &str| {
+        let entries = fs::read_dir(dir.path().join(folder)).unwrap();
+        let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    assert_eq!(
+        names("results.zarr/cases"),
+        ["a.zip", "b%2Ezip.zip", "zarr.json"]
+    );
+    // Laid out as folders it is the same.
+    let read = || {
+        let stored = StoredStudy::open(dir.path()).unwrap();
+        let case = stored.case("a").unwrap();
+        let channels = case.channel_names().unwrap();
+        let histories = channels.iter().map(|name| case.channel(name).unwrap());
+        let graph = case.range_graph("pipe", LineQuantity::X).unwrap();
+        (
+            stored.summary().unwrap(),
+            case.line_names().unwrap(),
+            histories.collect::<Vec<_>>(),
+            graph,
+            serde_json::to_string(&case.describe().unwrap()).unwrap(),
+        )
+    };
+    let packed = read();
+    assert!(packed.2.len() > 20 && packed.4.contains("\"cases/a/lines/pipe/x\""));
+    unpack(dir.path(), "a");
+    assert_eq!(read(), packed);
+}
+
+#[test]
 fn rows_beyond_the_planned_ones_extend_the_arrays() {
     let dir = tempfile::tempdir().unwrap();
     write_store(dir.path(), &study(&["a"]), 30.0, Status::Complete);
@@ -197,7 +235,8 @@ fn stores_that_cannot_be_read_say_why() {
     assert!(error.contains("no load case `z`"), "{error}");
 
     let store = dir.path().join("results.zarr");
-    let chunk = store.join("cases/a/ship.x/c/0");
+    let chunk = unpack(dir.path(), "a").join("ship.x/c/0");
+    let case = open().unwrap().case("a").unwrap();
     let mut bytes = fs::read(&chunk).unwrap();
     bytes[11] ^= 4;
     fs::write(&chunk, &bytes).unwrap();
@@ -215,7 +254,7 @@ fn stores_that_cannot_be_read_say_why() {
     let text = fs::read_to_string(&root).unwrap();
     fs::write(
         &root,
-        text.replace("\"catenix_store_format\":1", "\"catenix_store_format\":9"),
+        text.replace("\"catenix_store_format\":2", "\"catenix_store_format\":9"),
     )
     .unwrap();
     let error = open().unwrap_err().to_string();

@@ -1,7 +1,6 @@
 //! Answers, and how they are written.
 
-use std::fs::File;
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
 
 use serde::Serialize;
 use serde_json::json;
@@ -21,8 +20,6 @@ pub(crate) struct Response {
 pub(crate) enum Body {
     Static(&'static [u8]),
     Bytes(Vec<u8>),
-    /// An open file and how much of it is sent.
-    File(File, u64),
 }
 
 /// The status codes that are used.
@@ -84,22 +81,12 @@ impl Response {
         }
     }
 
-    /// Numbers as they are in memory.
+    /// Numbers as they are in memory or in a file.
     pub(crate) fn numbers(bytes: Vec<u8>) -> Self {
         Response {
             status: Status::Ok,
             content_type: "application/octet-stream",
             body: Body::Bytes(bytes),
-            location: None,
-        }
-    }
-
-    /// A file of the store.
-    pub(crate) fn file(file: File, length: u64) -> Self {
-        Response {
-            status: Status::Ok,
-            content_type: "application/octet-stream",
-            body: Body::File(file, length),
             location: None,
         }
     }
@@ -135,7 +122,6 @@ impl Response {
         let length = match &self.body {
             Body::Static(bytes) => bytes.len() as u64,
             Body::Bytes(bytes) => bytes.len() as u64,
-            Body::File(_, length) => *length,
         };
         let location = self
             .location
@@ -158,16 +144,6 @@ impl Response {
         match self.body {
             Body::Static(body) => bytes.extend_from_slice(body),
             Body::Bytes(body) => bytes.extend_from_slice(&body),
-            Body::File(file, length) => {
-                stream.write_all(&bytes)?;
-                let copied = io::copy(&mut file.take(length), stream)?;
-                // A file that shrank cannot keep the promised length; only closing tells the reader.
-                return if copied == length {
-                    Ok(())
-                } else {
-                    Err(io::ErrorKind::UnexpectedEof.into())
-                };
-            }
         }
         stream.write_all(&bytes)
     }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use catenix_results::{CaseProgress, StoreError, StoredStudy, read_vector};
+use catenix_results::{CaseProgress, StoreError, StoredStudy, read_vector, stored_file};
 use serde::Serialize;
 
 use crate::assets;
@@ -123,7 +123,7 @@ impl Site {
     fn case(&self, query: &str) -> Result<Response, StoreError> {
         let study = StoredStudy::open(&self.store)?;
         let case = study.case(&parameter(query, "case"))?;
-        Ok(Response::json(&case.describe(study.path())?))
+        Ok(Response::json(&case.describe()?))
     }
 
     fn node(&self, query: &str) -> Result<Response, StoreError> {
@@ -153,9 +153,9 @@ impl Site {
         for wanted in query.split('&').filter_map(|p| p.strip_prefix("array=")) {
             let wanted = wanted.split_once(':').and_then(|(rows, path)| {
                 let rows = rows.parse::<usize>().ok()?;
-                Some((rows, self.inside(path)?))
+                Some((rows, self.way(path)?))
             });
-            let Some((rows, directory)) = wanted else {
+            let Some((rows, way)) = wanted else {
                 return Ok(not_found());
             };
             let room = MOST_VECTOR_VALUES - bytes.len() / size_of::<f64>();
@@ -165,35 +165,36 @@ impl Site {
                 return Ok(Response::error(Status::TooLarge, code, message));
             }
             // An answer has the length that was asked for, or the page could not cut it apart.
-            let mut values = read_vector(&directory, rows)?;
+            let Some(mut values) = read_vector(&self.store, &way, rows)? else {
+                return Ok(not_found());
+            };
             values.resize(rows, f64::NAN);
             bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
         }
         Ok(Response::numbers(bytes))
     }
 
-    /// What a path below the store leads to: every part of it is a plain name, and with symbolic
-    /// links resolved it is still below the store.
-    fn inside(&self, path: &str) -> Option<PathBuf> {
-        let mut file = self.store.clone();
-        for part in path.split('/') {
-            file.push(decode(part).filter(|name| is_plain(name))?);
-        }
-        let file = fs::canonicalize(file).ok()?;
-        file.starts_with(&self.store).then_some(file)
+    /// The names on a way below the store: every one of them is plain, and what lies there, or the
+    /// archive that it lies in, is below the store with symbolic links resolved.
+    fn way(&self, path: &str) -> Option<Vec<String>> {
+        let plain = |part: &str| decode(part).filter(|name| is_plain(name));
+        let names = path.split('/').map(plain).collect::<Option<Vec<_>>>()?;
+        let folder: PathBuf = names
+            .iter()
+            .fold(self.store.clone(), |path, name| path.join(name));
+        let archive = match names.as_slice() {
+            [cases, case, _, ..] => self.store.join(cases).join(format!("{case}.zip")),
+            _ => folder.clone(),
+        };
+        let found = [archive, folder].into_iter().find(|path| path.exists())?;
+        let found = fs::canonicalize(found).ok()?;
+        found.starts_with(&self.store).then_some(names)
     }
 
-    /// A regular file of the store.
+    /// A regular file of the store, or of the archive of a case.
     fn store_file(&self, path: &str) -> Response {
-        let Some(file) = self.inside(path) else {
-            return not_found();
-        };
-        let opened = fs::File::open(&file).and_then(|opened| {
-            let metadata = opened.metadata()?;
-            Ok((opened, metadata))
-        });
-        match opened {
-            Ok((opened, metadata)) if metadata.is_file() => Response::file(opened, metadata.len()),
+        match self.way(path).map(|way| stored_file(&self.store, &way)) {
+            Some(Ok(Some(content))) => Response::numbers(content),
             _ => not_found(),
         }
     }
@@ -213,7 +214,10 @@ fn last_write(store: &Path) -> Option<SystemTime> {
     let cases = fs::read_dir(store.join("cases")).ok()?;
     cases
         .flatten()
-        .filter_map(|entry| written(entry.path().join("zarr.json")))
+        .filter_map(|entry| match entry.path() {
+            path if path.is_dir() => written(path.join("zarr.json")),
+            archive => written(archive),
+        })
         .max()
 }
 

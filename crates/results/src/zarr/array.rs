@@ -1,11 +1,8 @@
 //! Arrays of floats, chunked along their first axis.
 
-use std::fs;
-use std::io::ErrorKind;
-use std::path::PathBuf;
-
 use serde_json::{Value, json};
 
+use super::Place;
 use super::chunk::{self, ChunkFault};
 use super::node::{self, Attributes, damaged};
 use crate::StoreError;
@@ -67,27 +64,25 @@ impl ArrayShape {
     }
 }
 
-/// An array on disk.
+/// An array of the store.
 #[derive(Debug, Clone)]
 pub(crate) struct Array {
-    path: PathBuf,
+    place: Place,
     kind: FloatKind,
     shape: ArrayShape,
     attributes: Attributes,
 }
 
 impl Array {
-    /// Makes the directory and writes the metadata; all values read as NaN until written.
+    /// Writes the metadata; all values read as NaN until written.
     pub(crate) fn create(
-        path: PathBuf,
+        place: Place,
         kind: FloatKind,
         shape: ArrayShape,
         attributes: Attributes,
     ) -> Result<Self, StoreError> {
-        let chunks = path.join("c");
-        fs::create_dir_all(&chunks).map_err(|source| StoreError::write(&chunks, source))?;
         let array = Array {
-            path,
+            place,
             kind,
             shape,
             attributes,
@@ -97,12 +92,12 @@ impl Array {
     }
 
     /// Opens an array that this crate wrote; arrays of any other layout are refused.
-    pub(crate) fn open(path: PathBuf) -> Result<Self, StoreError> {
-        let metadata = node::read_metadata(&path, "array")?;
+    pub(crate) fn open(place: Place) -> Result<Self, StoreError> {
+        let metadata = node::read_metadata(&place, "array")?;
         let parsed = parse_metadata(&metadata);
         let (kind, shape) = parsed.ok_or_else(|| {
             damaged(
-                &path,
+                &place.path(),
                 "its zarr.json is not in the layout that this version writes",
             )
         })?;
@@ -111,7 +106,7 @@ impl Array {
             _ => Attributes::new(),
         };
         Ok(Array {
-            path,
+            place,
             kind,
             shape,
             attributes,
@@ -138,14 +133,8 @@ impl Array {
     /// `values`: (rows x row length), at most one chunk.
     pub(crate) fn write_chunk(&self, index: usize, values: &[f64]) -> Result<(), StoreError> {
         let len = self.shape.chunk_rows * self.shape.row_len();
-        let path = self.chunk_path(index);
-        if let Some(parent) = path
-            .parent()
-            .filter(|parent| self.shape.columns.is_some() && !parent.is_dir())
-        {
-            fs::create_dir_all(parent).map_err(|source| StoreError::write(parent, source))?;
-        }
-        node::write_atomically(&path, &chunk::encode(values, len, self.kind))
+        self.chunk(index)
+            .write(chunk::encode(values, len, self.kind))
     }
 
     /// Writes all values, cut into chunks.
@@ -208,41 +197,39 @@ impl Array {
 
     /// Reads a chunk that must be there.
     pub(crate) fn read_written_chunk(&self, index: usize) -> Result<Vec<f64>, StoreError> {
-        let path = self.chunk_path(index);
-        if path.is_file() {
+        let chunk = self.chunk(index);
+        if chunk.is_file() {
             self.read_chunk(index)
         } else {
-            Err(damaged(&path, "the file is missing"))
+            Err(damaged(&chunk.path(), "the file is missing"))
         }
     }
 
     /// Every `step`-th value of a chunk, from the one at `first` on.
     fn read_every(&self, index: usize, first: usize, step: usize) -> Result<Vec<f64>, StoreError> {
         let len = self.shape.chunk_rows * self.shape.row_len();
-        let path = self.chunk_path(index);
-        let bytes = match fs::read(&path) {
+        let chunk = self.chunk(index);
+        let Some(bytes) = chunk.read()? else {
             // A chunk that was never written holds the fill value.
-            Err(error) if error.kind() == ErrorKind::NotFound => {
-                return Ok(vec![f64::NAN; (len - first).div_ceil(step)]);
-            }
-            other => other.map_err(|source| StoreError::read(&path, source))?,
+            return Ok(vec![f64::NAN; (len - first).div_ceil(step)]);
         };
         chunk::decode_every(&bytes, len, self.kind, first, step).map_err(|fault| {
             let what = match fault {
                 ChunkFault::Size => "the file does not have the size of a chunk",
                 ChunkFault::Checksum => "the checksum does not fit the data",
             };
-            damaged(&path, what)
+            damaged(&chunk.path(), what)
         })
     }
 
-    fn chunk_path(&self, index: usize) -> PathBuf {
-        let path = self.path.join("c").join(index.to_string());
-        if self.shape.columns.is_some() {
-            path.join("0")
+    /// The file of a chunk.
+    fn chunk(&self, index: usize) -> Place {
+        let across = if self.shape.columns.is_some() {
+            "/0"
         } else {
-            path
-        }
+            ""
+        };
+        self.place.join(&format!("c/{index}{across}"))
     }
 
     fn write_metadata(&self) -> Result<(), StoreError> {
@@ -269,7 +256,7 @@ impl Array {
             "dimension_names": dimensions,
             "attributes": self.attributes,
         });
-        node::write_metadata(&self.path, &metadata)
+        node::write_metadata(&self.place, &metadata)
     }
 }
 
@@ -349,10 +336,10 @@ mod tests {
             chunk_rows: 2,
             dimensions: vec!["time".into(), "node".into()],
         };
-        let path = dir.path().join("a");
-        let array = Array::create(path.clone(), FloatKind::F64, shape, Attributes::new()).unwrap();
+        let place = Place::folder(dir.path().join("a"));
+        let array = Array::create(place.clone(), FloatKind::F64, shape, Attributes::new()).unwrap();
         array.write_all(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]).unwrap();
-        let mut array = Array::open(path).unwrap();
+        let mut array = Array::open(place).unwrap();
         assert_eq!(array.read_rows(1, 3).unwrap(), [2.0, 3.0, 4.0, 5.0]);
         assert_eq!(array.read_column(1, 2).unwrap(), [1.0, 3.0]);
         assert_eq!(array.read_column(0, 3).unwrap(), [0.0, 2.0, 4.0]);

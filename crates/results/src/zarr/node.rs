@@ -1,71 +1,75 @@
 //! Groups, attributes, and the atomic write under every file of the store.
 
 use std::fs;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::io::{ErrorKind, Write};
+use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
+use super::Place;
 use crate::StoreError;
 
 /// Attributes of a group or array. Only numbers and strings are used, so that xarray can copy them
 /// into every format it knows.
 pub(crate) type Attributes = Map<String, Value>;
 
-/// A group: a directory with a `zarr.json`.
+/// A group: a node with attributes and no values.
 #[derive(Debug, Clone)]
 pub(crate) struct Group {
-    path: PathBuf,
+    place: Place,
 }
 
 impl Group {
-    /// Makes the directory and writes its metadata, replacing earlier attributes.
-    pub(crate) fn create(path: PathBuf, attributes: &Attributes) -> Result<Self, StoreError> {
-        fs::create_dir_all(&path).map_err(|source| StoreError::write(&path, source))?;
-        let group = Group { path };
+    /// Writes its metadata, replacing earlier attributes.
+    pub(crate) fn create(place: Place, attributes: &Attributes) -> Result<Self, StoreError> {
+        let group = Group { place };
         group.set_attributes(attributes)?;
         Ok(group)
     }
 
     /// A group that is expected to exist.
-    pub(crate) fn at(path: PathBuf) -> Self {
-        Group { path }
+    pub(crate) fn at(place: Place) -> Self {
+        Group { place }
     }
 
-    /// Directory of the group.
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
+    /// Where the group lies.
+    pub(crate) fn place(&self) -> &Place {
+        &self.place
     }
 
     /// Replaces the attributes in one step.
     pub(crate) fn set_attributes(&self, attributes: &Attributes) -> Result<(), StoreError> {
         write_metadata(
-            &self.path,
+            &self.place,
             &json!({ "zarr_format": 3, "node_type": "group", "attributes": attributes }),
         )
     }
 
     /// Reads the attributes.
     pub(crate) fn attributes(&self) -> Result<Attributes, StoreError> {
-        let mut metadata = read_metadata(&self.path, "group")?;
+        let mut metadata = read_metadata(&self.place, "group")?;
         match metadata.remove("attributes") {
             Some(Value::Object(attributes)) => Ok(attributes),
             None => Ok(Attributes::new()),
-            Some(_) => Err(damaged(&self.path, "its attributes are not a JSON object")),
+            Some(_) => Err(damaged(
+                &self.place.path(),
+                "its attributes are not a JSON object",
+            )),
         }
     }
 }
 
 /// Reads `zarr.json` of a node of the given type.
-pub(crate) fn read_metadata(directory: &Path, node_type: &str) -> Result<Attributes, StoreError> {
-    let path = directory.join("zarr.json");
-    let text = fs::read(&path).map_err(|source| StoreError::read(&path, source))?;
+pub(crate) fn read_metadata(place: &Place, node_type: &str) -> Result<Attributes, StoreError> {
+    let file = place.join("zarr.json");
+    let missing = || StoreError::read(&file.path(), ErrorKind::NotFound.into());
+    let text = file.read()?.ok_or_else(missing)?;
     let Ok(Value::Object(metadata)) = serde_json::from_slice(&text) else {
-        return Err(damaged(directory, "its zarr.json is not a JSON object"));
+        return Err(damaged(&place.path(), "its zarr.json is not a JSON object"));
     };
     if metadata.get("node_type").and_then(Value::as_str) != Some(node_type) {
         return Err(damaged(
-            directory,
+            &place.path(),
             &format!("its zarr.json does not describe a Zarr {node_type}"),
         ));
     }
@@ -73,11 +77,10 @@ pub(crate) fn read_metadata(directory: &Path, node_type: &str) -> Result<Attribu
 }
 
 /// Writes `zarr.json` of a node.
-pub(crate) fn write_metadata(directory: &Path, metadata: &Value) -> Result<(), StoreError> {
-    write_atomically(
-        &directory.join("zarr.json"),
-        metadata.to_string().as_bytes(),
-    )
+pub(crate) fn write_metadata(place: &Place, metadata: &Value) -> Result<(), StoreError> {
+    place
+        .join("zarr.json")
+        .write(metadata.to_string().into_bytes())
 }
 
 /// Writes a file so that a reader, or a restart after a kill, finds the old content or the new one

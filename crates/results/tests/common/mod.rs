@@ -5,7 +5,8 @@
 // A panic is how a test fails, and this module is nothing but tests.
 #![allow(clippy::unwrap_used)]
 
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use catenix_model::{
     Appearance, Axis, Body, Channel, ChannelTarget, Current, DynamicsSettings, Environment, Figure,
@@ -64,6 +65,26 @@ impl Sample for Moment {
             *value = line_value(index / nodes, index % nodes, self.time);
         }
     }
+}
+
+/// Lays the archive of a case out as folders, which a store may have as well, and gives its folder.
+pub fn unpack(out: &Path, case: &str) -> PathBuf {
+    let folder = out.join("results.zarr/cases").join(case);
+    let archive = folder.with_added_extension("zip");
+    let bytes = fs::read(&archive).unwrap();
+    fs::remove_file(&archive).unwrap();
+    let mut rest = &bytes[..];
+    // Files stand one after another, uncompressed, each behind a header of 30 bytes and its name.
+    while rest.starts_with(b"PK\x03\x04") {
+        let size = u32::from_le_bytes(rest[22..26].try_into().unwrap()) as usize;
+        let name = usize::from(u16::from_le_bytes([rest[26], rest[27]]));
+        let (header, content) = rest.split_at(30 + name);
+        let file = folder.join(std::str::from_utf8(&header[30..]).unwrap());
+        fs::create_dir_all(file.parent().unwrap()).unwrap();
+        fs::write(file, &content[..size]).unwrap();
+        rest = &content[size..];
+    }
+    folder
 }
 
 /// Where the results come from.
