@@ -116,7 +116,7 @@ pub(crate) trait Formulation: Debug + Send + Sync {
     fn stiffest(&self) -> f64;
 
     /// Largest product of a spring's stiffness and the softness of a frame that it acts on.
-    fn stiffest_over(&self, frames: &[Frame], softness: &dyn Fn(&Frame) -> f64) -> f64;
+    fn stiffest_over(&self, frames: &[Arc<Frame>], softness: &dyn Fn(&Frame) -> f64) -> f64;
 
     /// Largest angle by which the parts of lines turn that are no frames, whose own turns callers
     /// see, at an increment (frame_count) [rad].

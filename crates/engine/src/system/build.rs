@@ -1,5 +1,7 @@
 //! From the model to the assembled system.
 
+use std::sync::Arc;
+
 use catenix_model::{
     Attachment, Body, DynamicsSettings, EndConnection, IntegratorSettings, Line, LineEnd, Model,
     PointLoad, SupportRef,
@@ -83,7 +85,7 @@ pub(super) fn build(model: &Model) -> Result<System, SystemError> {
         current: CurrentField::new(&model.environment.current),
         model: model.clone(),
         body_batches: FrameBatch::all(&frames, line_frames..frames.len()),
-        frames,
+        frames: shared(frames),
         lumps,
         loads,
         // Forces below this are round-off: the stiffest spring times the spacing of numbers as
@@ -96,6 +98,19 @@ pub(super) fn build(model: &Model) -> Result<System, SystemError> {
         reference_force,
         reference_length,
     })
+}
+
+/// Frames of which those that are like the one before share it.
+fn shared(frames: Vec<Frame>) -> Vec<Arc<Frame>> {
+    let mut list: Vec<Arc<Frame>> = Vec::with_capacity(frames.len());
+    for frame in frames {
+        let own = match list.last() {
+            Some(before) if **before == frame => before.clone(),
+            _ => Arc::new(frame),
+        };
+        list.push(own);
+    }
+    list
 }
 
 /// Force that tolerances are relative to: weight and loads, or, where there is neither, the
@@ -121,23 +136,28 @@ fn reference_force(model: &Model, frames: &[Frame], lumps: &[FrameLump], length:
 }
 
 fn lay_out(line: &Line, first_frame: usize) -> LineLayout {
-    let mut arc_length = vec![0.0];
-    let mut element_types = Vec::new();
-    let mut natural = Vec::new();
+    let count = line.element_count();
+    let mut arc_length = Vec::with_capacity(count + 1);
+    arc_length.push(0.0);
+    let mut lengths = Vec::with_capacity(count);
+    let mut element_types = Vec::with_capacity(count);
+    let mut natural = Vec::with_capacity(count);
     let mut end = 0.0;
     for section in &line.sections {
         for length in &section.element_lengths {
             end += length;
             arc_length.push(end);
+            lengths.push(*length);
             element_types.push(section.line_type);
             natural.push(section.natural);
         }
     }
     LineLayout {
         first_frame,
-        element_count: element_types.len(),
+        element_count: count,
         frame_count: 0,
         arc_length,
+        lengths,
         element_types,
         natural,
     }

@@ -3,7 +3,9 @@
 //! What depends on a frame's height by cases (how much of it is under water, the current there, the
 //! seabed) is found frame by frame; the rest is computed in lanes.
 
+use std::borrow::Borrow;
 use std::ops::Range;
+use std::sync::Arc;
 
 use catenix_numerics::lanes::{
     Kernel, Lane, MOST_LANES, Mat3, Record, Row, Vec3, block, gather, lane_count, put_records,
@@ -27,6 +29,13 @@ pub(crate) struct FrameBatch {
     first: usize,
     /// How many there are; the properties of the last one fill idle lanes.
     count: usize,
+    /// Neighbours that are alike share them.
+    rows: Arc<FrameRows>,
+}
+
+/// What never changes of the frames of a batch.
+#[derive(Debug, Clone, PartialEq)]
+struct FrameRows {
     /// Mass, weight, buoyancy, added mass across and along, added inertia (6).
     plain: [Row; 6],
     /// Drag coefficients (3).
@@ -39,45 +48,18 @@ pub(crate) struct FrameBatch {
 
 impl FrameBatch {
     /// The frames of a range in batches.
-    pub(crate) fn all(frames: &[Frame], range: Range<usize>) -> Vec<FrameBatch> {
-        let starts = range.clone().step_by(lane_count());
-        starts
-            .map(|first| FrameBatch::new(frames, first, lane_count().min(range.end - first)))
-            .collect()
-    }
-
-    fn new(frames: &[Frame], first: usize, count: usize) -> FrameBatch {
-        let mut batch = FrameBatch {
-            first,
-            count,
-            plain: [NO_ROW; 6],
-            drag: [NO_ROW; 3],
-            vectors: [NO_ROW; 9],
-            size: [NO_ROW; 2],
-        };
-        for lane in 0..MOST_LANES {
-            let frame = &frames[first + lane.min(count - 1)];
-            let plain = [
-                frame.mass,
-                frame.weight,
-                frame.buoyancy,
-                frame.added_normal,
-                frame.added_axial,
-                frame.added_inertia,
-            ];
-            fill(&mut batch.plain, lane, &plain);
-            let drag = [
-                frame.drag.normal,
-                frame.drag.axial,
-                frame.drag.radius_squared,
-            ];
-            fill(&mut batch.drag, lane, &drag);
-            fill(&mut batch.vectors, lane, frame.inertia.as_slice());
-            fill(&mut batch.vectors[3..], lane, frame.axis.as_slice());
-            fill(&mut batch.vectors[6..], lane, frame.buoyancy_arm.as_slice());
-            fill(&mut batch.size, lane, &[frame.length, frame.diameter]);
+    pub(crate) fn all<F: Borrow<Frame>>(frames: &[F], range: Range<usize>) -> Vec<FrameBatch> {
+        let mut batches: Vec<FrameBatch> = Vec::with_capacity(range.len().div_ceil(lane_count()));
+        for first in range.clone().step_by(lane_count()) {
+            let count = lane_count().min(range.end - first);
+            let rows = FrameRows::new(&frames[first..first + count]);
+            let rows = match batches.last() {
+                Some(before) if *before.rows == rows => before.rows.clone(),
+                _ => Arc::new(rows),
+            };
+            batches.push(FrameBatch { first, count, rows });
         }
-        batch
+        batches
     }
 
     /// The frames in it.
@@ -90,6 +72,40 @@ impl FrameBatch {
     #[inline(always)]
     pub(crate) fn put<T: Lane, I: Record, const R: usize>(&self, values: &[T; R], to: &mut [I]) {
         put_records(values, to, self.first, self.count);
+    }
+}
+
+impl FrameRows {
+    fn new<F: Borrow<Frame>>(frames: &[F]) -> FrameRows {
+        let mut rows = FrameRows {
+            plain: [NO_ROW; 6],
+            drag: [NO_ROW; 3],
+            vectors: [NO_ROW; 9],
+            size: [NO_ROW; 2],
+        };
+        for lane in 0..MOST_LANES {
+            let frame: &Frame = frames[lane.min(frames.len() - 1)].borrow();
+            let plain = [
+                frame.mass,
+                frame.weight,
+                frame.buoyancy,
+                frame.added_normal,
+                frame.added_axial,
+                frame.added_inertia,
+            ];
+            fill(&mut rows.plain, lane, &plain);
+            let drag = [
+                frame.drag.normal,
+                frame.drag.axial,
+                frame.drag.radius_squared,
+            ];
+            fill(&mut rows.drag, lane, &drag);
+            fill(&mut rows.vectors, lane, frame.inertia.as_slice());
+            fill(&mut rows.vectors[3..], lane, frame.axis.as_slice());
+            fill(&mut rows.vectors[6..], lane, frame.buoyancy_arm.as_slice());
+            fill(&mut rows.size, lane, &[frame.length, frame.diameter]);
+        }
+        rows
     }
 }
 
@@ -173,7 +189,7 @@ impl Kernel for Energies<'_> {
             let loads = FrameLoads::<T>::new(token, batch, &self.at.sea, &pose);
             let mut each = [NO_ROW; 4];
             let velocity = pose.velocity;
-            let mass: T = T::read(token, &batch.plain[0]);
+            let mass: T = T::read(token, &batch.rows.plain[0]);
             let (share, motion) = (loads.share, &loads.motion);
             let turning = loads.tensors.inertia.times(motion.spin)
                 - loads.added.inertia.times(motion.spin) * share;
@@ -331,10 +347,11 @@ impl<T: Lane> FrameLoads<T> {
     #[inline(always)]
     pub(crate) fn new(
         token: T::Token,
-        rows: &FrameBatch,
+        batch: &FrameBatch,
         sea: &Sea<'_>,
         pose: &FrameState<T>,
     ) -> Self {
+        let rows = &*batch.rows;
         let rotation = pose.rotation;
         let axis = rotation.times(Vec3::read(token, &rows.vectors[3..]));
         let Surroundings {
@@ -484,7 +501,7 @@ mod tests {
                 match lanes {
                     0 => {
                         for k in 0..n {
-                            let batches = [FrameBatch::new(&at.system.frames, k, 1)];
+                            let batches = FrameBatch::all(&at.system.frames, k..k + 1);
                             let one = Frames {
                                 at,
                                 batches: &batches,

@@ -66,7 +66,8 @@ const WORRYING_ROUND_OFF: f64 = 1e-5;
 #[derive(Debug, Clone)]
 pub struct System {
     pub(crate) model: Model,
-    pub(crate) frames: Vec<Frame>,
+    /// Neighbours that are alike share one.
+    pub(crate) frames: Vec<Arc<Frame>>,
     /// The bodies, several at a time.
     pub(crate) body_batches: Vec<frame_kernel::FrameBatch>,
     pub(crate) lumps: Vec<FrameLump>,
@@ -84,7 +85,7 @@ pub struct System {
 }
 
 /// Constant properties of a rigid frame: an element of a line, or a body.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Frame {
     /// Axis of the frame in its own axes, unit: along the line, or the body's z.
     pub axis: Vector3,
@@ -169,6 +170,8 @@ pub(crate) struct LineLayout {
     pub element_count: usize,
     /// Unstretched distance of each node from end A (n_elements + 1) [m].
     pub arc_length: Vec<f64>,
+    /// Unstretched length of each element (n_elements) [m].
+    pub lengths: Vec<f64>,
     /// Line type of each element (n_elements).
     pub element_types: Vec<usize>,
     /// Stress-free shape of each element (n_elements).
@@ -183,7 +186,7 @@ impl LineLayout {
 
     /// Unstretched length of an element [m].
     pub fn length(&self, element: usize) -> f64 {
-        self.arc_length[element + 1] - self.arc_length[element]
+        self.lengths[element]
     }
 }
 

@@ -368,6 +368,7 @@ mod tests {
             element_count: 0,
             frame_count: 0,
             arc_length: vec![0.0, 2.0, 6.0, 7.0, 8.0],
+            lengths: vec![2.0, 4.0, 1.0, 1.0],
             element_types: Vec::new(),
             natural: Vec::new(),
         };

@@ -28,7 +28,7 @@ pub(super) struct DemEvaluation {
 /// A connector that is no link.
 #[derive(Debug, Clone)]
 struct Other {
-    /// Its index among all connectors.
+    /// Its index among those that are no links.
     index: usize,
     pair: EvaluatedPair,
     predicted: Prediction,
@@ -36,24 +36,17 @@ struct Other {
 
 impl DemEvaluation {
     pub(super) fn new(dem: Arc<Dem>, at: &Situation<'_>) -> DemEvaluation {
-        let (links, are_links) = Links::among(&dem.connectors, at.system.body_frame(0));
-        let others = (0..dem.connectors.len()).filter(|&index| !are_links[index]);
-        let other = |index| Other {
+        let other = |(index, connector)| Other {
             index,
-            pair: EvaluatedPair::new(&dem.connectors[index], at),
+            pair: EvaluatedPair::new(connector, at),
             predicted: Prediction::default(),
         };
         DemEvaluation {
-            links,
-            others: others.map(other).collect(),
+            links: Links::new(&dem.linked),
+            others: dem.others.iter().enumerate().map(other).collect(),
             has_prediction: false,
             dem,
         }
-    }
-
-    /// A connector at the state of `at`.
-    pub(super) fn pair(&self, at: &Situation<'_>, index: usize) -> EvaluatedPair {
-        EvaluatedPair::new(&self.dem.connectors[index], at)
     }
 }
 
@@ -72,7 +65,7 @@ impl Evaluation for DemEvaluation {
         let elements = &self.dem.elements;
         self.links.put(elements, at, weights, residual, matrix);
         for other in &mut self.others {
-            let connector = &self.dem.connectors[other.index];
+            let connector = &self.dem.others[other.index];
             let mut pair = EvaluatedPair::new(connector, at);
             let forces = pair.forces();
             for (mount, force) in [
@@ -108,7 +101,7 @@ impl Evaluation for DemEvaluation {
     fn moving(&mut self, _: &System, increment: &[Vector6]) {
         self.links.moving(&self.dem.elements, increment);
         for other in &mut self.others {
-            let connector = &self.dem.connectors[other.index];
+            let connector = &self.dem.others[other.index];
             other.predicted = other.pair.predicted(connector, increment);
         }
         self.has_prediction = true;
@@ -128,7 +121,7 @@ impl Evaluation for DemEvaluation {
         terms.elastic += elastic;
         terms.structural_damping += damping;
         for Other { index, pair, .. } in &self.others {
-            let connector = &self.dem.connectors[*index];
+            let connector = &self.dem.others[*index];
             terms.elastic += pair.energy(&connector.law);
             terms.structural_damping += pair.damping_power();
             let forces = pair.forces();
@@ -160,8 +153,9 @@ impl Evaluation for DemEvaluation {
     }
 
     fn structural_damping(&self, at: &Situation<'_>) -> f64 {
-        let power = |connector| EvaluatedPair::new(connector, at).damping_power();
-        -self.dem.connectors.iter().map(power).sum::<f64>()
+        let powers = self.dem.connectors();
+        let powers = powers.map(|connector| EvaluatedPair::new(&connector, at).damping_power());
+        -powers.sum::<f64>()
     }
 
     /// Elements that meet no torsional stiffness at all (chains, ropes without it) could spin about
@@ -171,7 +165,7 @@ impl Evaluation for DemEvaluation {
         let system = at.system;
         let mut idle = vec![true; system.body_frame(0)];
         let mut axial = vec![0.0f64; idle.len()];
-        for connector in &self.dem.connectors {
+        for connector in self.dem.connectors() {
             let turns = match &connector.law {
                 ConnectorLaw::Beam(stiffness) => stiffness.torsion > 0.0,
                 ConnectorLaw::Joint(joint) => !joint.springs.is_empty(),
@@ -199,13 +193,13 @@ impl Evaluation for DemEvaluation {
     /// Source: docs/theory/modes.md, eq. (18).
     fn motion_at_nodes(&self, at: &Situation<'_>, x: &[Vector6], line: usize) -> Vec<Vector6> {
         let layout = &at.system.lines[line];
-        let nodes = &self.dem.nodes[line];
         (0..=layout.element_count)
             .map(|node| {
                 let before = (node > 0).then(|| element_end(layout, node - 1, true));
                 let after = (node < layout.element_count).then(|| element_end(layout, node, false));
-                let end = nodes[node].filter(|_| before.is_none() || after.is_none());
-                let Some(connector) = end.map(|index| &self.dem.connectors[index]) else {
+                let at_end = before.is_none() || after.is_none();
+                let end = at_end.then(|| self.dem.connector(line, node)).flatten();
+                let Some(connector) = end else {
                     return mean(before.iter().chain(&after).map(|m| m.motion(at.state, x)));
                 };
                 // An end is where its support is; a joint lets it turn as the line does.

@@ -1,6 +1,8 @@
 //! The elements of all lines, and the connectors between them, several at a time. Connectors that
 //! are not straight, round and linear are few, and go one by one ([`super::pairs`]).
 
+use std::sync::Arc;
+
 use catenix_numerics::lanes::{
     Kernel, Lane, MOST_LANES, Mat3, Row, Vec3, block, gather, lane_count, vectorised,
 };
@@ -9,16 +11,15 @@ use catenix_numerics::{BlockMatrix, TangentWeights, Vector3, Vector6};
 use super::super::Situation;
 use super::element::connector::predicted_force;
 use super::element::pair_kernel::{PairGeometry, PairLaw, PairRates, PairTangents, PairWeights};
-use super::{Carrier, Connector, ConnectorLaw, Place};
+use super::{Carrier, Connector, ConnectorLaw, Link, Place};
 use crate::system::frame_kernel::{FrameBatch, FrameLoads, FrameState, add_contacts, turns};
 
 const NO_ROW: Row = [0.0; MOST_LANES];
 
-/// The links that begin at the elements of a batch: each leads to the next element.
-#[derive(Debug, Clone)]
-struct LinkBatch {
-    /// Whether any element has one.
-    any: bool,
+/// What never changes of the links that begin at the elements of a batch: each leads to the next
+/// element.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct LinkLaws {
     /// 1 where an element has one, else 0; all else is 0 there too.
     linked: Row,
     /// Axial, shear, torsional and bending stiffness, and damping time (5).
@@ -27,6 +28,19 @@ struct LinkBatch {
     levers: [Row; 2],
     /// Whether any of them is damped.
     damped: bool,
+}
+
+/// The links that begin at the elements of a batch.
+#[derive(Debug, Clone)]
+struct LinkBatch {
+    /// Their laws, if any element has a link; neighbours that are alike share them.
+    laws: Option<Arc<LinkLaws>>,
+    state: LinkStates,
+}
+
+/// What changes of the links of a batch.
+#[derive(Debug, Clone)]
+struct LinkStates {
     /// What the last assembly leaves: both axes, gap, mean axis, inverse of the sum's length (13).
     geometry: [Row; 13],
     /// Gap along and across the axis that the mixed form predicts (4) [m].
@@ -44,9 +58,8 @@ pub(super) struct Links {
     predicts: bool,
 }
 
-/// The law and the levers of a connector that is a link: straight, round, linear, between the axes
-/// of two neighbours.
-fn link_of(connector: &Connector) -> Option<(usize, [f64; 7])> {
+/// The link that a connector is, and the frame at which it begins, if it is one.
+pub(super) fn link_of(connector: &Connector) -> Option<(usize, Link)> {
     let ConnectorLaw::Beam(law) = &connector.law else {
         return None;
     };
@@ -60,53 +73,72 @@ fn link_of(connector: &Connector) -> Option<(usize, [f64; 7])> {
             && mount.arm == Vector3::x() * mount.arm.x
     };
     let plain = along(mounts[0], k) && along(mounts[1], k + 1);
-    plain.then_some((
-        k,
-        [
-            law.axial,
-            law.shear,
-            law.torsion,
-            law.bending,
-            law.damping,
-            mounts[0].arm.x,
-            mounts[1].arm.x,
-        ],
-    ))
+    let levers = mounts.map(|mount| mount.arm.x);
+    let law = law.clone();
+    plain.then_some((k, Link { law, levers }))
+}
+
+impl LinkLaws {
+    const NONE: LinkLaws = LinkLaws {
+        linked: NO_ROW,
+        law: [NO_ROW; 5],
+        levers: [NO_ROW; 2],
+        damped: false,
+    };
+
+    /// Links, in the order of the frames at which they begin, by the batches of `elements` elements.
+    pub(super) fn batches<'l>(
+        links: impl Iterator<Item = (usize, &'l Link)>,
+        elements: usize,
+    ) -> Vec<Option<Arc<LinkLaws>>> {
+        let mut batches: Vec<Option<Arc<LinkLaws>>> = Vec::new();
+        batches.resize(elements.div_ceil(lane_count()), None);
+        let mut links = links.peekable();
+        let mut before: Option<Arc<LinkLaws>> = None;
+        while let Some(&(frame, _)) = links.peek() {
+            let index = frame / lane_count();
+            let mut laws = LinkLaws::NONE;
+            while let Some((frame, link)) = links.next_if(|(k, _)| k / lane_count() == index) {
+                laws.put(frame % lane_count(), link);
+            }
+            let own = match before {
+                Some(before) if *before == laws => before,
+                _ => Arc::new(laws),
+            };
+            batches[index] = Some(own.clone());
+            before = Some(own);
+        }
+        batches
+    }
+
+    fn put(&mut self, lane: usize, Link { law, levers }: &Link) {
+        self.linked[lane] = 1.0;
+        self.damped |= law.damping > 0.0;
+        let own = [law.axial, law.shear, law.torsion, law.bending, law.damping];
+        for (row, value) in self.law.iter_mut().zip(own) {
+            row[lane] = value;
+        }
+        for (row, value) in self.levers.iter_mut().zip(levers) {
+            row[lane] = *value;
+        }
+    }
 }
 
 impl Links {
-    /// The links among `connectors` of `elements` elements, and whether each connector is one.
-    pub(super) fn among(connectors: &[Connector], elements: usize) -> (Links, Vec<bool>) {
-        let batch = LinkBatch {
-            any: false,
-            linked: NO_ROW,
-            law: [NO_ROW; 5],
-            levers: [NO_ROW; 2],
-            damped: false,
-            geometry: [NO_ROW; 13],
-            predicted: [NO_ROW; 4],
-            energy: [NO_ROW; 2],
+    /// Room for links, by the batches of elements at which they begin.
+    pub(super) fn new(laws: &[Option<Arc<LinkLaws>>]) -> Links {
+        let batch = |laws: &Option<Arc<LinkLaws>>| LinkBatch {
+            laws: laws.clone(),
+            state: LinkStates {
+                geometry: [NO_ROW; 13],
+                predicted: [NO_ROW; 4],
+                energy: [NO_ROW; 2],
+            },
         };
-        let mut batches = vec![batch; elements.div_ceil(lane_count())];
-        let mut are = Vec::with_capacity(connectors.len());
-        for connector in connectors {
-            let link = link_of(connector);
-            are.push(link.is_some());
-            let Some((frame, law)) = link else { continue };
-            let (batch, lane) = (&mut batches[frame / lane_count()], frame % lane_count());
-            batch.any = true;
-            batch.linked[lane] = 1.0;
-            batch.damped |= law[4] > 0.0;
-            let rows = batch.law.iter_mut().chain(&mut batch.levers);
-            for (row, value) in rows.zip(law) {
-                row[lane] = value;
-            }
-        }
-        let links = Links {
-            batches,
+        Links {
+            batches: laws.iter().map(batch).collect(),
             predicts: false,
-        };
-        (links, are)
+        }
     }
 
     pub(super) fn begin(&mut self) {
@@ -146,7 +178,7 @@ impl Links {
     pub(super) fn energy(&self) -> [f64; 2] {
         let mut sums = [0.0; 2];
         for batch in &self.batches {
-            for (sum, row) in sums.iter_mut().zip(&batch.energy) {
+            for (sum, row) in sums.iter_mut().zip(&batch.state.energy) {
                 *sum += row.iter().sum::<f64>();
             }
         }
@@ -234,15 +266,16 @@ impl Kernel for Put<'_> {
                 let [[a, b], [c, d]] = loads.tangent(weights, turn);
                 own = [a, b, c, d];
             }
-            if link.any {
-                let pair = Pair::new(token, link, &pose, &next);
+            if let Some(laws) = &link.laws {
+                let pair = Pair::new(token, laws, &pose, &next);
                 let [on_first, on_second] = pair.forces();
                 add(&mut sums, &on_first);
                 forces[here] = on_second;
-                pair.keep(link);
+                pair.keep(&mut link.state);
                 if let Some(weights) = weights {
+                    let predicted = links.predicts.then_some(&link.state.predicted);
                     let turns = [turn, turn.one_on(next_turn)];
-                    let t = pair.tangents(token, link, links.predicts, weights, turns);
+                    let t = pair.tangents(token, laws.damped, predicted, weights, turns);
                     let ([m, n], f, [f_m, f_n]) =
                         (&t.moment, t.force.translation, t.force.rotation);
                     own[0] = own[0] + f;
@@ -305,7 +338,7 @@ impl<T: Lane> Pair<T> {
     #[inline(always)]
     fn new(
         token: T::Token,
-        link: &LinkBatch,
+        link: &LinkLaws,
         first: &FrameState<T>,
         following: &FrameState<T>,
     ) -> Self {
@@ -379,7 +412,7 @@ impl<T: Lane> Pair<T> {
 
     /// Keeps what energies and the next prediction need.
     #[inline(always)]
-    fn keep(&self, link: &mut LinkBatch) {
+    fn keep(&self, link: &mut LinkStates) {
         let [first, second] = self.geometry.axes;
         first.write(&mut link.geometry);
         second.write(&mut link.geometry[3..]);
@@ -397,25 +430,25 @@ impl<T: Lane> Pair<T> {
     fn tangents(
         &self,
         token: T::Token,
-        link: &LinkBatch,
-        predicts: bool,
+        damped: bool,
+        predicted: Option<&[Row; 4]>,
         weights: &TangentWeights<'_>,
         turns: [Mat3<T>; 2],
     ) -> PairTangents<T> {
         let (law, pair) = (&self.law, &self.geometry);
-        let geometric = if predicts {
-            let tension = law.axial * T::read(token, &link.predicted[0]);
-            let across = Vec3::read(token, &link.predicted[1..]);
+        let geometric = if let Some(predicted) = predicted {
+            let tension = law.axial * T::read(token, &predicted[0]);
+            let across = Vec3::read(token, &predicted[1..]);
             predicted_force(pair.mean, tension, law.shear, across)
         } else {
             self.elastic[0]
         };
         let moment_by = pair.round_moment_by_rotations(law, self.twist);
         let mut tangents = pair.elastic_tangent(law, geometric, self.levers, &moment_by);
-        if predicts {
+        if predicted.is_some() {
             tangents.turn_with(pair.moments_by_force(self.arms, geometric - self.elastic[0]));
         }
-        if link.damped && weights.velocity > 0.0 {
+        if damped && weights.velocity > 0.0 {
             let own = PairWeights {
                 velocity: T::splat(token, weights.velocity),
                 rotation: turns,
@@ -454,7 +487,11 @@ impl Kernel for Moving<'_> {
         for (index, link) in self.links.batches.iter_mut().enumerate() {
             let following = self.elements.get(index + 1).unwrap_or(first);
             let next: [T; 6] = gather(token, self.increment, following.frames().start);
-            let kept = &link.geometry;
+            let Some(laws) = &link.laws else {
+                own = next;
+                continue;
+            };
+            let kept = &link.state.geometry;
             let inverse = T::read(token, &kept[12]);
             let pair = PairGeometry {
                 axes: [at::<T>(token, kept, 0), at::<T>(token, kept, 3)],
@@ -465,8 +502,8 @@ impl Kernel for Moving<'_> {
                 one_plus_cos: inverse,
             };
             let levers = [
-                T::read(token, &link.levers[0]),
-                T::read(token, &link.levers[1]),
+                T::read(token, &laws.levers[0]),
+                T::read(token, &laws.levers[1]),
             ];
             let [a, b] = pair.axes;
             let [shift, turn] = [three(&own, 0), three(&own, 3)];
@@ -476,8 +513,8 @@ impl Kernel for Moving<'_> {
                 shift.one_on(next_shift) - shift,
                 [turn, turn.one_on(next_turn)],
             );
-            extension.write(&mut link.predicted[0]);
-            across.write(&mut link.predicted[1..]);
+            extension.write(&mut link.state.predicted[0]);
+            across.write(&mut link.state.predicted[1..]);
             own = next;
         }
     }

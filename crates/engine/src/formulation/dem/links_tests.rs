@@ -8,7 +8,7 @@ use super::super::Situation;
 use super::element::connector::Prediction;
 use super::element::pair::RateWeights;
 use super::element::stiffness::ConnectorStiffness;
-use super::links::Links;
+use super::links::{LinkLaws, Links, link_of};
 use super::pairs::{EvaluatedPair, scatter};
 use super::{Carrier, Connector, ConnectorLaw, Mount, Place};
 use crate::system::frame_kernel::{FrameBatch, put_frames};
@@ -83,9 +83,11 @@ fn lanes_compute_what_single_connectors_do() {
             tail: None,
         };
         let topology = Topology::new(vec![whole], frames);
-        let (mut links, are) = Links::among(&connectors, frames);
+        let owned: Option<Vec<_>> = connectors.iter().map(link_of).collect();
+        let owned = owned.expect("all of them are links");
+        let laws = LinkLaws::batches(owned.iter().map(|(k, link)| (*k, link)), frames);
+        let mut links = Links::new(&laws);
         let elements = FrameBatch::all(&at.system.frames, 0..frames);
-        assert!(are.iter().all(|&is| is));
         let increment: Vec<Vector6> = (0..frames)
             .map(|k| Vector6::from_fn(|row, _| 0.02 * ((7 * k + row) as f64).sin()))
             .collect();

@@ -13,6 +13,7 @@ mod pairs;
 mod shape;
 mod slide;
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use catenix_model::{FormulationKind, Line, LineEnd, LineType, Model};
@@ -26,6 +27,7 @@ use element::joint::JointStiffness;
 use element::stiffness::{ConnectorStiffness, HalfElement, rotary_share};
 use ends::end_connector;
 use evaluation::DemEvaluation;
+use links::{LinkLaws, link_of};
 use slide::Slide;
 
 /// Share of an element's length within which a thing counts as sitting at the element's end; it is
@@ -93,12 +95,60 @@ impl ConnectorLaw {
 /// All connectors of the lines of a model.
 #[derive(Debug, Clone)]
 struct Dem {
-    connectors: Vec<Connector>,
-    /// Connector at each node of each line, end A to end B; `None` at a free end
-    /// (n_lines x (n_elements + 1)).
-    nodes: Vec<Vec<Option<usize>>>,
-    /// The elements, several at a time.
+    /// Per line what is at its nodes.
+    lines: Vec<LineNodes>,
+    /// The links that differ from the one before, and all other connectors.
+    links: Vec<Link>,
+    others: Vec<Connector>,
+    /// The elements, several at a time, and the links that begin at them.
     elements: Vec<FrameBatch>,
+    linked: Vec<Option<Arc<LinkLaws>>>,
+}
+
+/// The connectors of a line.
+#[derive(Debug, Clone)]
+struct LineNodes {
+    first_frame: usize,
+    /// At each node, end A to end B (n_elements + 1).
+    nodes: Vec<Node>,
+}
+
+/// What is at a node.
+#[derive(Debug, Clone, Copy)]
+enum Node {
+    /// Nothing: a free end.
+    Free,
+    /// A link between the elements that meet there: an index into [`Dem::links`].
+    Link(u32),
+    /// Another connector: an index into [`Dem::others`].
+    Other(u32),
+}
+
+/// A connector that is computed with others of its kind: straight, round, linear, between the axes
+/// of two neighbours.
+#[derive(Debug, Clone, PartialEq)]
+struct Link {
+    law: ConnectorStiffness,
+    /// Place of the connection point on the axes of the two frames (2) [m].
+    levers: [f64; 2],
+}
+
+impl Link {
+    /// The connector that it is between frames k and k + 1.
+    fn at(&self, k: usize) -> Connector {
+        let mount = |side: usize| Mount {
+            carrier: Carrier::Free(k + side),
+            arm: Vector3::x() * self.levers[side],
+            axes: Matrix3::identity(),
+        };
+        Connector {
+            law: ConnectorLaw::Beam(self.law.clone()),
+            first: mount(0),
+            second: mount(1),
+            place: Place::Link(k),
+            slide: None,
+        }
+    }
 }
 
 /// Half of an element, for the connector on one of its sides.
@@ -140,7 +190,8 @@ pub(super) const FAMILY: Family = Family {
 /// Builds frames and connectors.
 fn build(plan: &Plan<'_>) -> Result<Lines, SystemError> {
     let model = plan.model;
-    let mut frames = Vec::new();
+    let counts = plan.layouts.iter().map(|layout| layout.element_count);
+    let mut frames = Vec::with_capacity(counts.sum());
     for layout in plan.layouts {
         for (k, &line_type) in layout.element_types.iter().enumerate() {
             let line_type = &model.line_types[line_type];
@@ -149,13 +200,16 @@ fn build(plan: &Plan<'_>) -> Result<Lines, SystemError> {
     }
     let shape = shape::first_shape(plan);
     let mut dem = Dem {
-        connectors: Vec::new(),
-        nodes: Vec::new(),
+        lines: Vec::new(),
+        links: Vec::new(),
+        others: Vec::new(),
         elements: FrameBatch::all(&frames, 0..frames.len()),
+        linked: Vec::new(),
     };
     for index in 0..model.lines.len() {
         dem.connect(plan, index, &shape)?;
     }
+    dem.linked = LinkLaws::batches(dem.all_links(), frames.len());
     Ok(Lines {
         frames,
         shape,
@@ -222,7 +276,7 @@ impl Dem {
     ) -> Result<(), SystemError> {
         let model = plan.model;
         let (line, layout) = (&model.lines[index], &plan.layouts[index]);
-        let mut nodes = vec![None; layout.element_count + 1];
+        let mut nodes = vec![Node::Free; layout.element_count + 1];
         for (node, place) in nodes.iter_mut().enumerate() {
             let end = if node == 0 {
                 Some(0)
@@ -274,11 +328,63 @@ impl Dem {
                     ),
                 });
             }
-            *place = Some(self.connectors.len());
-            self.connectors.push(connector);
+            *place = self.add(connector);
         }
-        self.nodes.push(nodes);
+        self.lines.push(LineNodes {
+            first_frame: layout.first_frame,
+            nodes,
+        });
         Ok(())
+    }
+
+    fn add(&mut self, connector: Connector) -> Node {
+        match link_of(&connector) {
+            Some((_, link)) => {
+                if self.links.last() != Some(&link) {
+                    self.links.push(link);
+                }
+                Node::Link(self.links.len() as u32 - 1)
+            }
+            None => {
+                self.others.push(connector);
+                Node::Other(self.others.len() as u32 - 1)
+            }
+        }
+    }
+
+    /// The connector at a node of a line, if there is one.
+    fn connector(&self, line: usize, node: usize) -> Option<Cow<'_, Connector>> {
+        let own = &self.lines[line];
+        match own.nodes[node] {
+            Node::Free => None,
+            Node::Link(index) => {
+                // It begins at the element before the node.
+                let first = own.first_frame + node - 1;
+                Some(Cow::Owned(self.links[index as usize].at(first)))
+            }
+            Node::Other(index) => Some(Cow::Borrowed(&self.others[index as usize])),
+        }
+    }
+
+    /// All connectors, line by line from end A.
+    fn connectors(&self) -> impl Iterator<Item = Cow<'_, Connector>> {
+        let lines = self.lines.iter().enumerate();
+        lines.flat_map(move |(line, own)| {
+            (0..own.nodes.len()).filter_map(move |node| self.connector(line, node))
+        })
+    }
+
+    /// All links with the frames at which they begin.
+    fn all_links(&self) -> impl Iterator<Item = (usize, &Link)> {
+        self.lines.iter().flat_map(|own| {
+            let nodes = own.nodes.iter().enumerate();
+            nodes.filter_map(|(node, what)| match what {
+                Node::Link(index) => {
+                    Some((own.first_frame + node - 1, &self.links[*index as usize]))
+                }
+                _ => None,
+            })
+        })
     }
 }
 
@@ -325,12 +431,14 @@ impl Formulation for Dem {
     }
 
     fn stiffest(&self) -> f64 {
-        let each = self.connectors.iter().map(|c| c.law.stiffness().stiffest());
+        let links = self.links.iter().map(|link| &link.law);
+        let others = self.others.iter().map(|other| other.law.stiffness());
+        let each = links.chain(others).map(ConnectorStiffness::stiffest);
         each.fold(0.0, f64::max)
     }
 
-    fn stiffest_over(&self, frames: &[Frame], softness: &dyn Fn(&Frame) -> f64) -> f64 {
-        let each = self.connectors.iter().map(|connector| {
+    fn stiffest_over(&self, frames: &[Arc<Frame>], softness: &dyn Fn(&Frame) -> f64) -> f64 {
+        let each = self.connectors().map(|connector| {
             let softest = [connector.first.carrier, connector.second.carrier]
                 .into_iter()
                 .filter_map(|carrier| match carrier {

@@ -18,10 +18,10 @@ pub(super) fn end_load(
 ) -> Vector6 {
     let layout = &at.system.lines[line];
     let node = if end == 0 { 0 } else { layout.element_count };
-    let Some(index) = own.dem.nodes[line][node] else {
+    let Some(connector) = own.dem.connector(line, node) else {
         return Vector6::zeros();
     };
-    let (connector, pair) = (&own.dem.connectors[index], own.pair(at, index));
+    let pair = EvaluatedPair::new(&connector, at);
     let forces = pair.forces();
     let support_first = matches!(connector.law, ConnectorLaw::Joint(_)) || end == 0;
     let (load, side) = if support_first {
@@ -45,11 +45,11 @@ pub(super) fn node(
 ) -> NodeResult {
     let layout = &at.system.lines[line];
     let model = &at.system.model;
-    let Some(index) = own.dem.nodes[line][node] else {
+    let Some(connector) = own.dem.connector(line, node) else {
         return free_end(at, layout, node);
     };
-    let pair = &own.pair(at, index);
-    let law = &own.dem.connectors[index].law;
+    let pair = &EvaluatedPair::new(&connector, at);
+    let law = &connector.law;
     let (mut result, elastic_moment) = match &pair.state {
         PairState::Beam(state) => {
             let axis = match node {

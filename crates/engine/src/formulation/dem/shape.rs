@@ -16,6 +16,11 @@ pub(super) fn first_shape(plan: &Plan<'_>) -> Configuration {
         supports,
     } = *plan;
     let mut shape = Configuration::default();
+    // Bodies follow the elements.
+    let counts = layouts.iter().map(|layout| layout.element_count);
+    let count = counts.sum::<usize>() + model.bodies.len();
+    shape.position.reserve_exact(count);
+    shape.rotation.reserve_exact(count);
     for (line, layout) in model.lines.iter().zip(layouts) {
         if natural::has_directions(model, line) {
             for (position, rotation) in directed_line(model, line, layout, supports) {

@@ -483,7 +483,7 @@ impl<K: Kernel> Formulation for Fem<K> {
         elements.chain(joints).fold(0.0, f64::max)
     }
 
-    fn stiffest_over(&self, frames: &[Frame], softness: &dyn Fn(&Frame) -> f64) -> f64 {
+    fn stiffest_over(&self, frames: &[Arc<Frame>], softness: &dyn Fn(&Frame) -> f64) -> f64 {
         let soft = |frame: Option<usize>| frame.map_or(0.0, |k| softness(&frames[k]));
         let elements = self.kernels.iter().zip(&self.parts).map(|(kernel, part)| {
             let softest = part.seats.each_ref().map(|seat| soft(seat.frame()));

@@ -445,7 +445,7 @@ impl Formulation for Lumped {
         springs.chain(ties).chain(bending).fold(0.0, f64::max)
     }
 
-    fn stiffest_over(&self, frames: &[Frame], softness: &dyn Fn(&Frame) -> f64) -> f64 {
+    fn stiffest_over(&self, frames: &[Arc<Frame>], softness: &dyn Fn(&Frame) -> f64) -> f64 {
         let each = self.lines.iter().flat_map(|line| {
             (0..line.elements()).map(|element| {
                 let blocks = [element, element + 1].map(|node| line.slot(node));
