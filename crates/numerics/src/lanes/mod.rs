@@ -72,6 +72,9 @@ pub trait Lane:
     /// Reads the first [`Self::COUNT`] of at least so many numbers.
     fn read_some(token: Self::Token, numbers: &[f64]) -> Self;
 
+    /// Reads up to [`Self::COUNT`] numbers; lanes beyond them hold zero.
+    fn read_part(token: Self::Token, numbers: &[f64]) -> Self;
+
     /// Writes the first [`Self::COUNT`] of at least so many numbers.
     fn write_some(self, numbers: &mut [f64]);
 
@@ -154,6 +157,11 @@ impl Lane for f64 {
 
     #[inline(always)]
     fn read_some((): (), numbers: &[f64]) -> f64 {
+        numbers[0]
+    }
+
+    #[inline(always)]
+    fn read_part((): (), numbers: &[f64]) -> f64 {
         numbers[0]
     }
 

@@ -114,6 +114,12 @@ impl<S: Registers> Lane for Pack<S> {
     }
 
     #[inline(always)]
+    fn read_part(s: S, numbers: &[f64]) -> Self {
+        let count = numbers.len().min(Self::COUNT);
+        Pack::new(s, s.partial_load_f64s(&numbers[..count]))
+    }
+
+    #[inline(always)]
     fn write_some(self, numbers: &mut [f64]) {
         S::as_mut_simd_f64s(&mut numbers[..Self::COUNT]).0[0] = self.v;
     }

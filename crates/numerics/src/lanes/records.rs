@@ -1,7 +1,7 @@
 //! Records of numbers (a position, a velocity, a block of the matrix) into lanes and back, one
 //! record per lane, by squares that are transposed in registers.
 
-use super::{Lane, MOST_LANES, Row};
+use super::{Lane, MOST_LANES};
 
 /// A run of numbers that is stored record after record.
 pub trait Record: Copy {
@@ -38,77 +38,6 @@ record!(crate::Vector6, 6);
 record!(crate::Matrix3, 9);
 record!(crate::Block6, 36);
 
-/// Records that may be read beyond: consecutive ones, with room behind them, so that whole registers
-/// can be read.
-#[derive(Debug, Clone, Copy)]
-pub struct Run<'a>(&'a [f64]);
-
-/// Records behind those of the lanes that are read with them: eight numbers are up to three records.
-const BEYOND: usize = 3;
-
-/// A copy of the last records of a list, and more behind them.
-pub type LastRecords<I> = [I; MOST_LANES + BEYOND];
-
-impl<'a> Run<'a> {
-    /// The records from `first` on, one per lane; `room` is for those at the end of the list.
-    ///
-    /// # Panics
-    /// If there is no record `first`.
-    #[inline(always)]
-    pub fn new<T: Lane, I: Record>(
-        records: &'a [I],
-        first: usize,
-        room: &'a mut Option<LastRecords<I>>,
-    ) -> Run<'a> {
-        let wanted = T::COUNT + BEYOND;
-        match records.get(first..first + wanted) {
-            Some(records) => Run(I::numbers(records)),
-            None => Run(I::numbers(&last(records, first, room)[..wanted])),
-        }
-    }
-
-    /// The first `R` numbers of each record.
-    #[inline(always)]
-    pub fn gather<T: Lane, I: Record, const R: usize>(self, token: T::Token) -> [T; R] {
-        // One look at the bounds.
-        let numbers = &self.0[..I::LENGTH * (T::COUNT + BEYOND)];
-        let mut values = [T::splat(token, 0.0); R];
-        let mut start = 0;
-        while start < R {
-            // So that it ends with the record, if the record is long enough.
-            let from = start.min(R.saturating_sub(T::COUNT));
-            let mut square = [values[0]; MOST_LANES];
-            let mut lane = 0;
-            while lane < T::COUNT {
-                let at = I::LENGTH * lane + from;
-                square[lane] = T::read_some(token, &numbers[at..at + T::COUNT]);
-                lane += 1;
-            }
-            let square = T::transposed(square);
-            let mut k = start;
-            while k < R && k < from + T::COUNT {
-                values[k] = square[k - from];
-                k += 1;
-            }
-            start = from + T::COUNT;
-        }
-        values
-    }
-}
-
-/// The last records, the very last one repeated.
-#[cold]
-#[inline(never)]
-fn last<'a, I: Record>(
-    records: &[I],
-    first: usize,
-    room: &'a mut Option<LastRecords<I>>,
-) -> &'a LastRecords<I> {
-    room.insert(std::array::from_fn(|k| {
-        records[(first + k).min(records.len() - 1)]
-    }))
-}
-
 /// The first `R` numbers of consecutive records, one record per lane. Lanes beyond the last record
 /// hold the last one.
 ///
@@ -120,8 +49,52 @@ pub fn gather<T: Lane, I: Record, const R: usize>(
     records: &[I],
     first: usize,
 ) -> [T; R] {
-    let mut room = None;
-    Run::new::<T, I>(records, first, &mut room).gather::<T, I, R>(token)
+    let numbers = I::numbers(records);
+    let begin = I::LENGTH * first;
+    // Whole registers are read, which may reach beyond the last record of the lanes.
+    let extent = I::LENGTH * (T::COUNT - 1) + R.max(T::COUNT);
+    match numbers.get(begin..begin + extent) {
+        Some(numbers) => {
+            squares::<T, I, R>(token, |at| T::read_some(token, &numbers[at..at + T::COUNT]))
+        }
+        None => {
+            let most = I::LENGTH * (records.len() - 1 - first);
+            let numbers = &numbers[begin..];
+            squares::<T, I, R>(token, |at| {
+                let at = at.min(most + at % I::LENGTH);
+                T::read_part(token, &numbers[at..])
+            })
+        }
+    }
+}
+
+/// The first `R` numbers of each record, from what is `read` at so many numbers behind the start of
+/// the first one.
+#[inline(always)]
+fn squares<T: Lane, I: Record, const R: usize>(
+    token: T::Token,
+    read: impl Fn(usize) -> T,
+) -> [T; R] {
+    let mut values = [T::splat(token, 0.0); R];
+    let mut start = 0;
+    while start < R {
+        // So that it ends with the record, if the record is long enough.
+        let from = start.min(R.saturating_sub(T::COUNT));
+        let mut square = [values[0]; MOST_LANES];
+        let mut lane = 0;
+        while lane < T::COUNT {
+            square[lane] = read(I::LENGTH * lane + from);
+            lane += 1;
+        }
+        let square = T::transposed(square);
+        let mut k = start;
+        while k < R && k < from + T::COUNT {
+            values[k] = square[k - from];
+            k += 1;
+        }
+        start = from + T::COUNT;
+    }
+    values
 }
 
 /// Adds what the first `count` lanes hold to consecutive records, from `first` on.
@@ -160,19 +133,9 @@ fn scatter<T: Lane, I: Record, const R: usize>(
     count: usize,
     add: bool,
 ) {
-    let numbers = I::numbers_mut(records);
-    let (begin, extent) = (I::LENGTH * first, I::LENGTH * T::COUNT);
-    if count < T::COUNT {
-        let mut rows = [[0.0; MOST_LANES]; R];
-        let mut k = 0;
-        while k < R {
-            values[k].write(&mut rows[k]);
-            k += 1;
-        }
-        scatter_some(&rows, &mut numbers[begin..], I::LENGTH, count, add);
-        return;
-    }
-    let window = &mut numbers[begin..begin + extent];
+    let count = count.min(T::COUNT);
+    let begin = I::LENGTH * first;
+    let window = &mut I::numbers_mut(records)[begin..begin + I::LENGTH * count];
     let mut start = 0;
     while start < R {
         let mut square = [values[start]; MOST_LANES];
@@ -184,6 +147,9 @@ fn scatter<T: Lane, I: Record, const R: usize>(
         let square = T::transposed(square);
         let mut lane = 0;
         while lane < T::COUNT {
+            if lane == count {
+                break;
+            }
             let at = I::LENGTH * lane + start;
             if start + T::COUNT <= R {
                 let room = &mut window[at..at + T::COUNT];
@@ -208,17 +174,6 @@ fn scatter<T: Lane, I: Record, const R: usize>(
             lane += 1;
         }
         start += T::COUNT;
-    }
-}
-
-/// As [`scatter`], where there are fewer records than lanes.
-#[cold]
-#[inline(never)]
-fn scatter_some(rows: &[Row], numbers: &mut [f64], length: usize, count: usize, add: bool) {
-    for (lane, record) in numbers.chunks_mut(length).take(count).enumerate() {
-        for (number, row) in record.iter_mut().zip(rows) {
-            *number = if add { *number } else { 0.0 } + row[lane];
-        }
     }
 }
 
