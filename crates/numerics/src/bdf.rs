@@ -283,7 +283,7 @@ impl Integrator for Bdf {
         self.prepare(&times);
         let solution = self
             .newton
-            .solve(system, end_time, &mut self.stage, &settings.newton)?;
+            .solve(system, end_time, &mut self.stage, settings)?;
         let order = self.order;
         let local_error = self.local_error(system, &times, order);
         let growth = self.choose_order(system, &times, settings.allowed_error, local_error);

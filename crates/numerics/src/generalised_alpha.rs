@@ -105,7 +105,7 @@ impl Integrator for GeneralisedAlpha {
         self.stage.predict(step);
         let solution = self
             .newton
-            .solve(system, end_time, &mut self.stage, &settings.newton)?;
+            .solve(system, end_time, &mut self.stage, settings)?;
         let local_error = self.stage.local_error(system);
         Ok(StepOutcome {
             iterations: solution.iterations,
@@ -434,6 +434,41 @@ mod tests {
         let failure = alpha.advance(&mut system, 0.1, 0.1, &settings).unwrap_err();
         assert_eq!(failure.iterations, 2);
         assert_eq!(alpha.state(), &state);
+    }
+
+    #[test]
+    fn a_solution_may_be_off_by_little_beside_the_allowed_error() {
+        let step = |tolerance_newtons: f64, allowed_error: Option<f64>| {
+            let mut system = Tumbler::free();
+            let state = system.start();
+            let mut alpha =
+                GeneralisedAlpha::new(AlphaParameters::with_spectral_radius(0.8), state);
+            let settings = StepSettings {
+                newton: NewtonSettings {
+                    tolerance_newtons,
+                    max_iterations: 12,
+                },
+                allowed_error,
+            };
+            let outcome = alpha.advance(&mut system, 0.3, 0.3, &settings).unwrap();
+            alpha.accept();
+            (outcome, alpha.state().clone())
+        };
+        let (_, exact) = step(1e-12, None);
+        let (outcome, _) = step(1e-4, None);
+        assert!(outcome.residual.newtons < 1e-4);
+        let mut earlier = 0;
+        for tolerance in [1e-4, 1e-5, 1e-6, 1e-7] {
+            let (tight, _) = step(tolerance, None);
+            let allowed = 1e-3;
+            let (loose, state) = step(tolerance, Some(allowed));
+            assert!(loose.residual.newtons <= 10.0 * tolerance);
+            assert!(loose.iterations <= tight.iterations);
+            earlier += tight.iterations - loose.iterations;
+            let off = distance(&state, &exact);
+            assert!(off <= 0.01 * allowed, "off by {off} at {tolerance}");
+        }
+        assert!(earlier > 0, "some solution ends earlier");
     }
 
     #[test]

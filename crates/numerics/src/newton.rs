@@ -4,6 +4,7 @@
 
 use crate::Vector6;
 use crate::implicit::{ImplicitSystem, MotionState, ResidualSize, TangentWeights};
+use crate::integrator::StepSettings;
 
 /// Newton iterations before the line search looks at their residual.
 const UNCHECKED_ITERATIONS: usize = 4;
@@ -20,6 +21,12 @@ const PAUSE: usize = 3;
 const MOST_REUSES: usize = 3;
 /// Most halvings of an increment.
 const MOST_HALVINGS: usize = 3;
+
+/// Share of a step's allowed error that a solution may be off by, where its residual is above the
+/// tolerance.
+const UNSOLVED: f64 = 0.01;
+/// Largest residual of such a solution, over the tolerance.
+const ABOVE_TOLERANCE: f64 = 10.0;
 
 /// When Newton's method stops.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,8 +102,10 @@ impl Newton {
         system: &mut dyn ImplicitSystem,
         time: f64,
         stage: &mut dyn Stage,
-        settings: &NewtonSettings,
+        settings: &StepSettings,
     ) -> Result<NewtonOutcome, NewtonFailure> {
+        let unsolved = UNSOLVED * settings.allowed_error.unwrap_or(0.0);
+        let settings = &settings.newton;
         // What the system knows of the last solution helps where this one follows it.
         if !std::mem::take(&mut self.converged) {
             system.begin();
@@ -114,7 +123,9 @@ impl Newton {
             let mut reuse = false;
             if iterations > 0 && likely {
                 let residual = self.search_line(system, time, stage, iterations, previous);
-                converged = residual <= settings.tolerance_newtons;
+                converged = residual <= settings.tolerance_newtons
+                    || residual <= ABOVE_TOLERANCE * settings.tolerance_newtons
+                        && self.next_increment(system, residual, previous) <= unsolved;
                 if reuses > 0 && residual > GOOD_REDUCTION * previous && !converged {
                     may_reuse = false;
                     self.pause = PAUSE;
@@ -141,7 +152,7 @@ impl Newton {
                 return Err(failure);
             }
             previous = residual.newtons;
-            if residual.newtons <= settings.tolerance_newtons {
+            if converged || residual.newtons <= settings.tolerance_newtons {
                 self.expected = iterations;
                 self.converged = true;
                 return Ok(NewtonOutcome {
@@ -170,6 +181,14 @@ impl Newton {
             system.moving(&self.increment);
             stage.correct(&self.increment);
         }
+    }
+
+    /// Size of the increment that would follow the last one, if increments shrink as residuals do
+    /// [m].
+    ///
+    /// Source: docs/theory/solver.md, eq. (7a).
+    fn next_increment(&self, system: &dyn ImplicitSystem, residual: f64, previous: f64) -> f64 {
+        system.increment_size(&self.increment) * residual / previous
     }
 
     /// Evaluates the residual after an increment, and takes half of the increment back as long as
