@@ -15,7 +15,7 @@ use catenix_results::{
 };
 use cpu_time::ThreadTime;
 
-use crate::accuracy::{Wanted, refined};
+use crate::accuracy::{Wanted, doubts, refined};
 use crate::watch::Watch;
 
 /// Elapsed time between two looks of the watch.
@@ -193,7 +193,7 @@ pub(crate) fn settle<'a>(
         iterations: solution.iterations,
         residual_n: solution.residual_n,
     });
-    account.warnings.clone_from(&solution.warnings);
+    account.warnings.extend_from_slice(&solution.warnings);
     Ok(solution)
 }
 
@@ -227,6 +227,7 @@ impl Account {
         match chosen {
             Ok((case, mut discretisation)) => {
                 discretisation.cpu_seconds = Some(trials);
+                self.warnings = doubts(&discretisation);
                 self.discretisation = Some(discretisation);
                 (Cow::Owned(case), None)
             }

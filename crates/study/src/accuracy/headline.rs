@@ -180,6 +180,9 @@ struct Headlines<'a, 'm> {
     found: Vec<Headline>,
 }
 
+/// Behind the name of a line: its smallest effective tension.
+pub(super) const SMALLEST_TENSION: &str = ", smallest effective_tension";
+
 impl Headlines<'_, '_> {
     fn push(&mut self, name: String, unit: &'static str, value: f64, scale: f64) {
         let known = self.found.iter().any(|headline| headline.name == name);
@@ -284,8 +287,8 @@ impl Headlines<'_, '_> {
         let high = largest(&extremes.max, LineQuantity::EffectiveTension);
         let scale = low.abs().max(high.abs());
         let first_peak = self.found.len();
+        self.push(format!("{name}{SMALLEST_TENSION}"), "N", low, scale);
         let name = |what: &str| format!("{name}, {what}");
-        self.push(name("smallest effective_tension"), "N", low, scale);
         self.push(name("largest effective_tension"), "N", high, scale);
         let moment = largest(&extremes.max, LineQuantity::BendMoment);
         let any_line = self.collector.lines.iter();

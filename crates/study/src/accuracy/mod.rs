@@ -19,6 +19,7 @@ use catenix_results::{CaseError, Discretisation, ErrorEstimate};
 use crate::case::{Halt, dynamics_halt, flow, statics_halt, system_of};
 use crate::watch::Watch;
 use family::Family;
+use headline::SMALLEST_TENSION;
 pub(crate) use headline::{Collector, Headline};
 use plan::Planner;
 
@@ -30,6 +31,9 @@ pub(crate) enum Wanted {
     /// Everything that the model describes: the motion, where there is one.
     Everything,
 }
+
+/// Compression that counts for none, over the largest tension of the line.
+const SLIGHT: f64 = 0.01;
 
 /// A model with the mesh and steps that were chosen, and the errors that are left.
 struct Chosen {
@@ -96,6 +100,23 @@ pub(crate) fn refined(
     Ok((case, discretisation))
 }
 
+/// Warnings where estimates say little: a compressed line may have several shapes, and neighbouring
+/// meshes that agree on one of them say nothing of the others.
+pub(crate) fn doubts(discretisation: &Discretisation) -> Vec<String> {
+    let compressed = discretisation.estimates.iter().filter_map(|estimate| {
+        let line = estimate.result.strip_suffix(SMALLEST_TENSION)?;
+        (estimate.value < -SLIGHT * estimate.scale).then(|| {
+            format!(
+                "{line} is compressed (effective tension down to {:.3e} {}), so it may have more \
+                 than one shape, and the error estimates hold for the one that was found: compare \
+                 with a run of twice the elements",
+                estimate.value, estimate.unit
+            )
+        })
+    });
+    compressed.collect()
+}
+
 /// Computes a case without a store.
 fn compute<'m>(
     model: &'m Model,
@@ -139,5 +160,43 @@ fn no_estimate() -> CaseError {
     CaseError {
         code: "accuracy::no_estimate".to_owned(),
         message: "no mesh of the family could be computed".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_compressed_line_puts_the_estimates_in_doubt() {
+        let estimate = |result: &str, value: f64| ErrorEstimate {
+            result: result.to_owned(),
+            unit: "N".to_owned(),
+            value,
+            scale: 5e4,
+            space_error: 1.0,
+            time_error: 1.0,
+            steers: false,
+        };
+        let discretisation = |estimates| Discretisation {
+            target: 0.01,
+            reached: true,
+            elements: 40,
+            largest_step_s: None,
+            step_error: None,
+            trials: 1,
+            cpu_seconds: None,
+            estimates,
+        };
+        let [pulled, hardly, pressed] = [1e3, -100.0, -9.8e3].map(|value| {
+            doubts(&discretisation(vec![estimate(
+                "hose, smallest effective_tension",
+                value,
+            )]))
+        });
+        assert!(pulled.is_empty() && hardly.is_empty());
+        assert!(pressed.len() == 1 && pressed[0].starts_with("hose is compressed"));
+        let other = estimate("hose.end_b.force_x, mean", -9.8e3);
+        assert!(doubts(&discretisation(vec![other])).is_empty());
     }
 }
