@@ -1,5 +1,6 @@
 //! Ensembles: many load cases of one model in one run, against the same cases run one by one.
 
+use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
@@ -11,6 +12,7 @@ use super::{Section, kept, no_charts, recalled};
 use crate::child;
 use crate::context::Context;
 use crate::markdown::{Table, digits, grouped};
+use crate::probe::Task;
 use crate::trial::{self, MESH, Stepping};
 
 pub(crate) const SECTION: Section = Section {
@@ -43,6 +45,13 @@ struct Data {
     /// The same on as many threads as there are processors [s].
     all_threads_s: [f64; 2],
     threads: usize,
+    /// Processor time of what the engine does of a case, mean over those that were run alone:
+    /// assembling, static equilibrium, motion [s].
+    #[serde(default)]
+    engine_s: [f64; 3],
+    /// Files that the run of all cases leaves.
+    #[serde(default)]
+    files: usize,
 }
 
 fn measure(context: &Context) -> Result<Value, String> {
@@ -81,21 +90,36 @@ fn measure(context: &Context) -> Result<Value, String> {
         Ok([cpu, start.elapsed().as_secs_f64()])
     };
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let least = |best: &mut [f64; 2], found: [f64; 2]| {
+    let least = |best: &mut [f64], found: &[f64]| {
         for (best, found) in best.iter_mut().zip(found) {
-            *best = best.min(found);
+            *best = best.min(*found);
         }
     };
     let chosen: Vec<usize> = (0..cases).step_by(EVERY).collect();
     let mut alone = vec![[f64::INFINITY; 2]; chosen.len()];
+    let mut engine = vec![[f64::INFINITY; 3]; chosen.len()];
     let (mut one, mut all) = ([f64::INFINITY; 2], [f64::INFINITY; 2]);
     for repeat in 0..context.repeats().min(2) {
         eprintln!("  ensemble, repeat {} ...", repeat + 1);
-        for (k, best) in chosen.iter().zip(&mut alone) {
-            least(best, run(Some(*k), 1)?);
+        for ((k, best), engine) in chosen.iter().zip(&mut alone).zip(&mut engine) {
+            least(best, &run(Some(*k), 1)?);
+            let probe = Task {
+                model: model.clone(),
+                case: name(*k),
+                channels: Vec::new(),
+                statics_only: false,
+                accuracy: None,
+            }
+            .run(context)?;
+            let found = [
+                probe.assembling_cpu_s,
+                probe.statics_cpu_s,
+                probe.motion_cpu_s,
+            ];
+            least(engine, &found);
         }
-        least(&mut one, run(None, 1)?);
-        least(&mut all, run(None, threads)?);
+        least(&mut one, &run(None, 1)?);
+        least(&mut all, &run(None, threads)?);
     }
     let total: f64 = alone.iter().map(|[cpu, _]| cpu).sum();
     kept(&Data {
@@ -107,6 +131,11 @@ fn measure(context: &Context) -> Result<Value, String> {
         one_thread_s: one,
         all_threads_s: all,
         threads,
+        engine_s: [0, 1, 2].map(|part| {
+            let sum: f64 = engine.iter().map(|found| found[part]).sum();
+            sum / chosen.len() as f64
+        }),
+        files: count_files(&context.work.join("results"))?,
     })
 }
 
@@ -133,6 +162,14 @@ fn markdown(data: &Value) -> Result<String, String> {
             elapsed,
         ]);
     };
+    let engine: f64 = d.engine_s.iter().sum();
+    if engine > 0.0 {
+        row(
+            "engine alone, nothing recorded".to_owned(),
+            engine,
+            "-".to_owned(),
+        );
+    }
     row(
         format!("one by one (mean of {})", d.alone),
         d.alone_cpu_s,
@@ -151,11 +188,40 @@ fn markdown(data: &Value) -> Result<String, String> {
     Ok(format!(
         "{} load cases of the sea trial ({} elements; other current headings and speeds), {} s each in\n\
          steps of {STEP} s, with `catenix run`: statics, motion and store, whole process.\n\n{}\n\
+         {}\
          Cases are computed one by one on each thread; [why lanes over cases do not pay]\
          (../docs/theory/speed.md#ensembles), and what was tried, stands with the kernels above.",
         d.cases,
         d.elements,
         grouped(d.simulated_s),
-        table.text()
+        table.text(),
+        parts(&d)
     ))
+}
+
+/// What the engine's time of a case is made of, and how much the run leaves.
+fn parts(d: &Data) -> String {
+    let [assembling, statics, motion] = d.engine_s.map(|seconds| digits(1e3 * seconds));
+    if d.files == 0 {
+        return String::new();
+    }
+    format!(
+        "Of a case the engine takes {assembling} ms for the system, {statics} ms for its equilibrium and {motion} ms\n\
+         for its motion. All cases leave {} files.\n\n",
+        d.files
+    )
+}
+
+/// Files in a folder and below.
+fn count_files(folder: &Path) -> Result<usize, String> {
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).map_err(|error| error.to_string())? {
+        let path = entry.map_err(|error| error.to_string())?.path();
+        count += if path.is_dir() {
+            count_files(&path)?
+        } else {
+            1
+        };
+    }
+    Ok(count)
 }

@@ -31,11 +31,22 @@ impl Curve {
 
     /// Adds the sample `values` (n) at `time` [s]; times increase.
     pub fn push(&mut self, time: f64, values: &[f64]) {
+        self.push_with(time, |sample| sample.copy_from_slice(values));
+    }
+
+    /// Adds a sample at `time` [s], which `write` writes (n); times increase.
+    pub fn push_with(&mut self, time: f64, write: impl FnOnce(&mut [f64])) {
         self.times.rotate_left(1);
         self.values.rotate_left(1);
         self.times[SAMPLES - 1] = time;
-        self.values[SAMPLES - 1].copy_from_slice(values);
+        write(&mut self.values[SAMPLES - 1]);
         self.count = (self.count + 1).min(SAMPLES);
+    }
+
+    /// Times [s] and values (n each) of the latest four samples, oldest first; NaN where there is
+    /// none yet.
+    pub(crate) fn samples(&self) -> (&[f64; SAMPLES], [&[f64]; SAMPLES]) {
+        (&self.times, self.values.each_ref().map(Vec::as_slice))
     }
 
     /// The latest sample (n).

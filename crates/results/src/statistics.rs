@@ -1,5 +1,8 @@
 //! Extremes, mean and standard deviation over time of many values at once.
 
+use pulp::{Arch, Simd, WithSimd};
+
+use crate::Curve;
 use crate::curve::Stretch;
 
 /// Values that are looked at together.
@@ -15,9 +18,8 @@ pub struct Extremes {
     pub min: Vec<f64>,
     /// Largest of each value (n).
     pub max: Vec<f64>,
-    /// The latest three samples, oldest first: times [s] and values (n each).
-    times: [f64; 3],
-    samples: [Vec<f64>; 3],
+    /// The latest samples that were added: empty where somebody else keeps them.
+    latest: Option<Curve>,
 }
 
 impl Extremes {
@@ -29,43 +31,87 @@ impl Extremes {
     /// Extremes that are known, (n) each.
     pub fn of(min: Vec<f64>, max: Vec<f64>) -> Self {
         Extremes {
-            times: [f64::NAN; 3],
-            samples: std::array::from_fn(|_| vec![f64::NAN; min.len()]),
             min,
             max,
+            latest: None,
         }
     }
 
     /// Adds the sample `values` (n) at `time` [s]; times increase.
     pub fn add(&mut self, time: f64, values: &[f64]) {
-        let times = [self.times[0], self.times[1], self.times[2], time];
-        let stretch = Stretch::new(&times);
-        let n = values.len();
-        let [oldest, old, last] = self.samples.each_ref().map(|sample| &sample[..n]);
-        let (min, max) = (&mut self.min[..n], &mut self.max[..n]);
-        // Few values have a crest, so most blocks do without its divisions.
-        for start in (0..n).step_by(BLOCK) {
-            let mut crests = false;
-            for k in start..n.min(start + BLOCK) {
-                // The smaller of NaN and a number is the number: the first sample needs no care.
-                min[k] = min[k].min(values[k]);
-                max[k] = max[k].max(values[k]);
-                crests |= stretch.has_extreme([oldest[k], old[k], last[k], values[k]]);
-            }
-            if crests {
-                for k in start..n.min(start + BLOCK) {
-                    let around = [oldest[k], old[k], last[k], values[k]];
-                    if stretch.has_extreme(around) {
-                        let crest = stretch.extreme(around);
-                        min[k] = min[k].min(crest);
-                        max[k] = max[k].max(crest);
-                    }
-                }
-            }
+        let n = self.min.len();
+        let mut curve = self.latest.take().unwrap_or_else(|| Curve::new(n));
+        curve.push_with(time, |sample| sample.copy_from_slice(&values[..n]));
+        self.follow(&curve);
+        self.latest = Some(curve);
+    }
+
+    /// Adds the latest sample of a curve of as many values, all of whose samples were added.
+    pub(crate) fn follow(&mut self, curve: &Curve) {
+        let (times, samples) = curve.samples();
+        Arch::new().dispatch(Widen {
+            min: &mut self.min,
+            max: &mut self.max,
+            stretch: Stretch::new(times),
+            samples,
+        });
+    }
+}
+
+/// Takes the latest of four samples into extremes, and the crests between the second and the third.
+struct Widen<'a> {
+    min: &'a mut [f64],
+    max: &'a mut [f64],
+    stretch: Stretch,
+    samples: [&'a [f64]; 4],
+}
+
+/// Compiled for every instruction set: the loops become vectors.
+impl WithSimd for Widen<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let n = self.min.len();
+        let stretch = self.stretch;
+        let (min, min_rest) = self.min.as_chunks_mut::<BLOCK>();
+        let (max, max_rest) = self.max.as_chunks_mut::<BLOCK>();
+        let blocks = self.samples.map(|sample| sample.as_chunks::<BLOCK>().0);
+        for (index, (min, max)) in min.iter_mut().zip(max).enumerate() {
+            widen(min, max, blocks.map(|blocks| &blocks[index][..]), &stretch);
         }
-        self.samples.rotate_left(1);
-        self.samples[2].copy_from_slice(values);
-        self.times = [times[1], times[2], times[3]];
+        let start = n - min_rest.len();
+        let rest = self.samples.map(|sample| &sample[start..n]);
+        widen(min_rest, max_rest, rest, &stretch);
+    }
+}
+
+/// [`Widen`] for a few values. Few have a crest, so most blocks do without its divisions.
+#[inline(always)]
+fn widen(min: &mut [f64], max: &mut [f64], samples: [&[f64]; 4], stretch: &Stretch) {
+    let n = min.len();
+    let (max, [oldest, old, last, values]) = (&mut max[..n], samples.map(|sample| &sample[..n]));
+    let around = |k: usize| [oldest[k], old[k], last[k], values[k]];
+    let mut crests = 0u64;
+    for k in 0..n {
+        // The smaller of NaN and a number is the number: the first sample needs no care.
+        min[k] = min[k].min(values[k]);
+        max[k] = max[k].max(values[k]);
+        crests |= u64::from(stretch.has_extreme(around(k)));
+    }
+    if crests == 0 {
+        return;
+    }
+    for k in 0..n {
+        // Without a branch, so that the divisions of a block are made at once.
+        let found = stretch.extreme(around(k));
+        let crest = if stretch.has_extreme(around(k)) {
+            found
+        } else {
+            values[k]
+        };
+        min[k] = min[k].min(crest);
+        max[k] = max[k].max(crest);
     }
 }
 
@@ -86,9 +132,8 @@ pub struct WindowStatistics {
     squares: Vec<f64>,
     /// Weight of the committed samples [s].
     weight: f64,
-    /// Latest sample, whose weight is known only when the next one arrives (n).
-    pending: Vec<f64>,
-    /// Time of the latest sample and the weight it has so far [s].
+    /// Time of the latest sample, whose weight is known only when the next one arrives, and the
+    /// weight it has so far [s].
     last: Option<(f64, f64)>,
     /// Time of the first sample [s].
     first_time: f64,
@@ -102,7 +147,6 @@ impl WindowStatistics {
             mean: vec![0.0; n],
             squares: vec![0.0; n],
             weight: 0.0,
-            pending: vec![0.0; n],
             last: None,
             first_time: f64::NAN,
         }
@@ -121,7 +165,6 @@ impl WindowStatistics {
                 self.last = Some((time, half));
             }
         }
-        self.pending.copy_from_slice(values);
         self.extremes.add(time, values);
     }
 
@@ -169,12 +212,38 @@ impl WindowStatistics {
         if self.weight <= 0.0 {
             return;
         }
-        let fraction = weight / self.weight;
-        let moments = self.mean.iter_mut().zip(&mut self.squares);
-        for ((mean, squares), value) in moments.zip(&self.pending) {
+        if let Some(latest) = &self.extremes.latest {
+            Arch::new().dispatch(Commit {
+                mean: &mut self.mean,
+                squares: &mut self.squares,
+                sample: latest.latest(),
+                weight,
+                fraction: weight / self.weight,
+            });
+        }
+    }
+}
+
+/// Takes a sample of some weight into means and squares, see [`WindowStatistics`].
+struct Commit<'a> {
+    mean: &'a mut [f64],
+    squares: &'a mut [f64],
+    sample: &'a [f64],
+    weight: f64,
+    /// Share of the weight in the weight of all samples so far.
+    fraction: f64,
+}
+
+impl WithSimd for Commit<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let moments = self.mean.iter_mut().zip(self.squares);
+        for ((mean, squares), value) in moments.zip(self.sample) {
             let deviation = value - *mean;
-            *mean += fraction * deviation;
-            *squares += weight * deviation * (value - *mean);
+            *mean += self.fraction * deviation;
+            *squares += self.weight * deviation * (value - *mean);
         }
     }
 }

@@ -8,7 +8,7 @@ use catenix_engine::{
     DynamicsError, DynamicsReport, EnergyAccount, StaticSolution, StaticsError, StepView, System,
     simulate, solve_statics,
 };
-use catenix_model::{ChannelTarget, LoadCase, Model};
+use catenix_model::{Channel, ChannelTarget, LoadCase, Model};
 use catenix_results::{
     CaseError, CaseOutcome, CaseRecorder, CaseSummary, Discretisation, DynamicsFacts, ResultStore,
     Sample, StaticsFacts, Status, StoreError,
@@ -259,6 +259,11 @@ impl Sample for EngineSample<'_, '_> {
 
     fn channel(&self, target: ChannelTarget) -> f64 {
         self.0.channel(target)
+    }
+
+    fn channels(&self, channels: &[Channel], out: &mut [f64]) {
+        let targets = channels.iter().map(|channel| channel.target);
+        self.0.channels(targets, out);
     }
 
     fn line_quantities(&self, line: usize, out: &mut [f64]) {

@@ -186,6 +186,33 @@ pub(crate) struct NodeResult {
     pub curvature: f64,
 }
 
+/// Rows of [`Evaluation::nodes`]: those of `LineQuantity::ALL`, with the three components of the
+/// axis where wall tension, stress and declination will stand, for which it is needed.
+pub(crate) const NODE_ROWS: usize = 11;
+
+impl NodeResult {
+    /// Writes the result at a node into its rows.
+    pub fn put(&self, node: usize, rows: &mut [f64]) {
+        let nodes = rows.len() / NODE_ROWS;
+        let values: [f64; NODE_ROWS] = [
+            self.position.x,
+            self.position.y,
+            self.position.z,
+            self.tension,
+            self.axis.x,
+            self.shear,
+            self.bend_moment,
+            self.curvature,
+            self.torque,
+            self.axis.y,
+            self.axis.z,
+        ];
+        for (row, value) in values.into_iter().enumerate() {
+            rows[row * nodes + node] = value;
+        }
+    }
+}
+
 /// Sets the lines' own part of a residual and, if wanted, of a matrix to zero.
 fn clear_lines(
     system: &System,
@@ -230,6 +257,13 @@ pub(crate) trait Evaluation: Debug + Send {
 
     /// Local results at a node, counted from end A (0 to n_elements).
     fn node(&self, at: &Situation<'_>, line: usize, node: usize) -> NodeResult;
+
+    /// Local results at all nodes of a line: ([`NODE_ROWS`] x nodes).
+    fn nodes(&self, at: &Situation<'_>, line: usize, rows: &mut [f64]) {
+        for node in 0..rows.len() / NODE_ROWS {
+            self.node(at, line, node).put(node, rows);
+        }
+    }
 
     /// Force and moment, about the connection point, of a line on what its end (0 or 1) is
     /// connected to (6) [N, N m]; zero for a free end.

@@ -10,6 +10,7 @@ use catenix_numerics::{Chain, Topology, Vector3};
 
 use super::carry::Followers;
 use super::frame_kernel::FrameBatch;
+use super::quantities::WallFactors;
 use super::{Frame, FrameLump, LineLayout, System, SystemError, loads, shape};
 use crate::body::lump::Lump;
 use crate::body::motion::PrescribedMotion;
@@ -92,6 +93,10 @@ pub(super) fn build(model: &Model) -> Result<System, SystemError> {
         // large as the coordinates. Source: docs/theory/solver.md, eq. (8).
         residual_floor: ROUND_OFF * f64::EPSILON * furthest * formulation.stiffest(),
         formulation,
+        walls: layouts
+            .iter()
+            .map(|layout| WallFactors::new(model, layout))
+            .collect(),
         lines: layouts,
         vessels,
         first_shape: shape,

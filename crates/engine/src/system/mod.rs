@@ -13,12 +13,15 @@ pub(crate) mod frames;
 mod linearised;
 mod loads;
 mod own_axes;
+mod quantities;
 pub(crate) mod shape;
 mod solver;
 pub(crate) mod surroundings;
 pub(crate) mod touch;
 mod view;
 
+#[cfg(test)]
+mod quantities_test;
 #[cfg(test)]
 pub(crate) mod tangent_test;
 
@@ -73,6 +76,8 @@ pub struct System {
     pub(crate) lumps: Vec<FrameLump>,
     pub(crate) loads: Vec<loads::FrameLoad>,
     pub(crate) lines: Vec<LineLayout>,
+    /// What the results along each line are computed with.
+    pub(crate) walls: Vec<quantities::WallFactors>,
     pub(crate) formulation: Arc<dyn Formulation>,
     pub(crate) vessels: Vec<PrescribedMotion>,
     pub(crate) current: CurrentField,

@@ -142,7 +142,7 @@ fn noise(seed: usize) -> f64 {
     2.0 * (x - x.floor()) - 1.0
 }
 
-fn noisy(n: usize, seed: usize, translation: f64, rotation: f64) -> Vec<Vector6> {
+pub(crate) fn noisy(n: usize, seed: usize, translation: f64, rotation: f64) -> Vec<Vector6> {
     (0..n)
         .map(|k| {
             Vector6::from_fn(|row, _| {

@@ -39,6 +39,19 @@ impl StepView<'_> {
 
     /// Value of a channel, in the channel's unit. NaN where there is nothing to read.
     pub fn channel(&self, target: ChannelTarget) -> f64 {
+        self.channel_with(target, &mut Ends::default())
+    }
+
+    /// Values of several channels. What channels of one end have in common is computed once where
+    /// they follow one another.
+    pub fn channels(&self, targets: impl Iterator<Item = ChannelTarget>, out: &mut [f64]) {
+        let mut ends = Ends::default();
+        for (value, target) in out.iter_mut().zip(targets) {
+            *value = self.channel_with(target, &mut ends);
+        }
+    }
+
+    fn channel_with(&self, target: ChannelTarget, ends: &mut Ends) -> f64 {
         match target {
             ChannelTarget::BodyPosition(body, axis) => pick(&self.body_position(body), axis),
             ChannelTarget::BodyOffset(body, axis) => {
@@ -67,19 +80,16 @@ impl StepView<'_> {
                 pick(&self.solver.vessels[vessel].position, axis)
             }
             ChannelTarget::EndForce(line, end, axis) => pick(
-                &self.end_load(line, end).fixed_rows::<3>(0).into_owned(),
+                &ends.load(self, line, end).fixed_rows::<3>(0).into_owned(),
                 axis,
             ),
             ChannelTarget::EndMoment(line, end, axis) => pick(
-                &self.end_load(line, end).fixed_rows::<3>(3).into_owned(),
+                &ends.load(self, line, end).fixed_rows::<3>(3).into_owned(),
                 axis,
             ),
-            ChannelTarget::EndTension(line, end) => {
-                self.node(line, self.end_node(line, end)).tension
-            }
+            ChannelTarget::EndTension(line, end) => ends.node(self, line, end).tension,
             ChannelTarget::EndDeclination(line, end) => {
-                let node = self.node(line, self.end_node(line, end));
-                angle_between(&node.axis, &-Vector3::z())
+                angle_between(&ends.node(self, line, end).axis, &-Vector3::z())
             }
             ChannelTarget::LinePoint(line, quantity, arc_length) => {
                 self.line_point(line, quantity, arc_length)
@@ -99,11 +109,8 @@ impl StepView<'_> {
             nodes * LineQuantity::ALL.len(),
             "one value per quantity and node"
         );
-        for node in 0..nodes {
-            for (row, value) in self.quantities(line, node).into_iter().enumerate() {
-                out[row * nodes + node] = value;
-            }
-        }
+        self.solver.lines.nodes(&self.situation(), line, out);
+        self.solver.system.walls[line].finish(nodes, out);
     }
 
     /// Smallest and largest effective tension along a line [N].
@@ -157,7 +164,8 @@ impl StepView<'_> {
         self.solver.situation(self.time, self.state)
     }
 
-    fn quantities(&self, line: usize, node: usize) -> [f64; 11] {
+    /// What [`Self::line_quantities`] writes at one node.
+    pub(super) fn quantities(&self, line: usize, node: usize) -> [f64; 11] {
         let system = self.solver.system;
         let result = self.node(line, node);
         let environment = &system.model.environment;
@@ -201,6 +209,37 @@ impl StepView<'_> {
             stress,
             angle_between(&result.axis, &-Vector3::z()),
         ]
+    }
+}
+
+/// What was last computed at an end of a line: which line and end, and what.
+#[derive(Default)]
+struct Ends {
+    load: Option<([usize; 2], Vector6)>,
+    node: Option<([usize; 2], NodeResult)>,
+}
+
+impl Ends {
+    fn load(&mut self, view: &StepView<'_>, line: usize, end: usize) -> Vector6 {
+        match self.load {
+            Some((of, load)) if of == [line, end] => load,
+            _ => {
+                let load = view.end_load(line, end);
+                self.load = Some(([line, end], load));
+                load
+            }
+        }
+    }
+
+    fn node(&mut self, view: &StepView<'_>, line: usize, end: usize) -> NodeResult {
+        match self.node {
+            Some((of, node)) if of == [line, end] => node,
+            _ => {
+                let node = view.node(line, view.end_node(line, end));
+                self.node = Some(([line, end], node));
+                node
+            }
+        }
     }
 }
 

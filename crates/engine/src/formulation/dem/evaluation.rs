@@ -9,7 +9,7 @@ use super::element::connector::Prediction;
 use super::element::pair::RateWeights;
 use super::links::Links;
 use super::pairs::{EvaluatedPair, scatter};
-use super::{ConnectorLaw, Dem, element_end, nodes};
+use super::{ConnectorLaw, Dem, element_end, node_pass, nodes};
 use crate::system::frame_kernel::frame_energies;
 use crate::system::frames::{self, frame_motion};
 use crate::system::{Carrier, EnergyTerms, Momentum, Mount, System};
@@ -109,6 +109,13 @@ impl Evaluation for DemEvaluation {
 
     fn node(&self, at: &Situation<'_>, line: usize, node: usize) -> NodeResult {
         nodes::node(self, at, line, node)
+    }
+
+    fn nodes(&self, at: &Situation<'_>, line: usize, rows: &mut [f64]) {
+        node_pass::put(&self.dem, at, line, rows);
+        for node in self.dem.nodes_apart(line) {
+            self.node(at, line, node).put(node, rows);
+        }
     }
 
     fn end_load(&self, at: &Situation<'_>, line: usize, end: usize) -> Vector6 {

@@ -320,23 +320,24 @@ fn other<T: Lane>(linked: T::Mask, own: Vec3<T>, following: Vec3<T>) -> Vec3<T> 
 }
 
 /// Links at a state.
-struct Pair<T> {
+pub(super) struct Pair<T> {
     law: PairLaw<T>,
     levers: [T; 2],
-    arms: [Vec3<T>; 2],
-    geometry: PairGeometry<T>,
+    /// From the frames to the connection points, global (3) [m].
+    pub(super) arms: [Vec3<T>; 2],
+    pub(super) geometry: PairGeometry<T>,
     twist: T,
     rates: PairRates<T>,
     stretch: T,
     /// Elastic force and moment.
-    elastic: [Vec3<T>; 2],
+    pub(super) elastic: [Vec3<T>; 2],
     /// Force and moment of the damping.
-    damping: [Vec3<T>; 2],
+    pub(super) damping: [Vec3<T>; 2],
 }
 
 impl<T: Lane> Pair<T> {
     #[inline(always)]
-    fn new(
+    pub(super) fn new(
         token: T::Token,
         link: &LinkLaws,
         first: &FrameState<T>,

@@ -8,6 +8,7 @@ mod links;
 #[cfg(test)]
 mod links_tests;
 mod natural;
+mod node_pass;
 mod nodes;
 mod pairs;
 mod shape;
@@ -28,6 +29,7 @@ use element::stiffness::{ConnectorStiffness, HalfElement, rotary_share};
 use ends::end_connector;
 use evaluation::DemEvaluation;
 use links::{LinkLaws, link_of};
+use node_pass::NodeLaws;
 use slide::Slide;
 
 /// Share of an element's length within which a thing counts as sitting at the element's end; it is
@@ -103,6 +105,8 @@ struct Dem {
     /// The elements, several at a time, and the links that begin at them.
     elements: Vec<FrameBatch>,
     linked: Vec<Option<Arc<LinkLaws>>>,
+    /// What results need to know of these links.
+    node_laws: Vec<Arc<NodeLaws>>,
 }
 
 /// The connectors of a line.
@@ -205,11 +209,13 @@ fn build(plan: &Plan<'_>) -> Result<Lines, SystemError> {
         others: Vec::new(),
         elements: FrameBatch::all(&frames, 0..frames.len()),
         linked: Vec::new(),
+        node_laws: Vec::new(),
     };
     for index in 0..model.lines.len() {
         dem.connect(plan, index, &shape)?;
     }
     dem.linked = LinkLaws::batches(dem.all_links(), frames.len());
+    dem.node_laws = NodeLaws::batches(&dem, plan);
     Ok(Lines {
         frames,
         shape,
@@ -267,6 +273,15 @@ fn element_end(layout: &LineLayout, element: usize, at_b: bool) -> Mount {
 }
 
 impl Dem {
+    /// Nodes of a line that are not between linked elements.
+    fn nodes_apart(&self, line: usize) -> impl Iterator<Item = usize> {
+        let nodes = self.lines[line].nodes.iter().enumerate();
+        nodes.filter_map(|(node, place)| match place {
+            Node::Link(_) => None,
+            Node::Free | Node::Other(_) => Some(node),
+        })
+    }
+
     /// Adds the connectors of a line, end A to end B.
     fn connect(
         &mut self,
