@@ -30,15 +30,7 @@ pub(super) struct LinkLaws {
     damped: bool,
 }
 
-/// The links that begin at the elements of a batch.
-#[derive(Debug, Clone)]
-struct LinkBatch {
-    /// Their laws, if any element has a link; neighbours that are alike share them.
-    laws: Option<Arc<LinkLaws>>,
-    state: LinkStates,
-}
-
-/// What changes of the links of a batch.
+/// What changes of the links that begin at the elements of a batch.
 #[derive(Debug, Clone)]
 struct LinkStates {
     /// What the last assembly leaves: both axes, gap, mean axis, inverse of the sum's length (13).
@@ -52,8 +44,11 @@ struct LinkStates {
 /// All links of the lines of a model.
 #[derive(Debug, Clone)]
 pub(super) struct Links {
-    /// As many as there are batches of elements.
-    batches: Vec<LinkBatch>,
+    /// As many as there are batches of elements; none where no element has a link. Neighbours that
+    /// are alike share theirs.
+    laws: Vec<Option<Arc<LinkLaws>>>,
+    /// As many.
+    states: Vec<LinkStates>,
     /// Whether there is a prediction.
     predicts: bool,
 }
@@ -127,16 +122,14 @@ impl LinkLaws {
 impl Links {
     /// Room for links, by the batches of elements at which they begin.
     pub(super) fn new(laws: &[Option<Arc<LinkLaws>>]) -> Links {
-        let batch = |laws: &Option<Arc<LinkLaws>>| LinkBatch {
-            laws: laws.clone(),
-            state: LinkStates {
-                geometry: [NO_ROW; 13],
-                predicted: [NO_ROW; 4],
-                energy: [NO_ROW; 2],
-            },
+        let state = LinkStates {
+            geometry: [NO_ROW; 13],
+            predicted: [NO_ROW; 4],
+            energy: [NO_ROW; 2],
         };
         Links {
-            batches: laws.iter().map(batch).collect(),
+            laws: laws.to_vec(),
+            states: vec![state; laws.len()],
             predicts: false,
         }
     }
@@ -177,8 +170,8 @@ impl Links {
     /// Elastic energy [J] and power of the damping [W] at the state that was assembled last.
     pub(super) fn energy(&self) -> [f64; 2] {
         let mut sums = [0.0; 2];
-        for batch in &self.batches {
-            for (sum, row) in sums.iter_mut().zip(&batch.state.energy) {
+        for state in &self.states {
+            for (sum, row) in sums.iter_mut().zip(&state.energy) {
                 *sum += row.iter().sum::<f64>();
             }
         }
@@ -253,7 +246,8 @@ impl Kernel for Put<'_> {
         let mut blocks = [[Mat3::zeros(token); 4]; 2];
         let mut pose = FrameState::load(token, at.state, first);
         let mut turn = turns_if::<T>(token, weights, first);
-        for (index, (batch, link)) in elements.iter().zip(&mut links.batches).enumerate() {
+        let laws = links.laws.iter().zip(&mut links.states);
+        for (index, (batch, (laws, state))) in elements.iter().zip(laws).enumerate() {
             let (here, before) = (index % 2, 1 - index % 2);
             let following = elements.get(index + 1).unwrap_or(batch);
             let next = FrameState::load(token, at.state, following);
@@ -266,14 +260,14 @@ impl Kernel for Put<'_> {
                 let [[a, b], [c, d]] = loads.tangent(weights, turn);
                 own = [a, b, c, d];
             }
-            if let Some(laws) = &link.laws {
+            if let Some(laws) = laws {
                 let pair = Pair::new(token, laws, &pose, &next);
                 let [on_first, on_second] = pair.forces();
                 add(&mut sums, &on_first);
                 forces[here] = on_second;
-                pair.keep(&mut link.state);
+                pair.keep(state);
                 if let Some(weights) = weights {
-                    let predicted = links.predicts.then_some(&link.state.predicted);
+                    let predicted = links.predicts.then_some(&state.predicted);
                     let turns = [turn, turn.one_on(next_turn)];
                     let t = pair.tangents(token, laws.damped, predicted, weights, turns);
                     let ([m, n], f, [f_m, f_n]) =
@@ -485,14 +479,15 @@ impl Kernel for Moving<'_> {
             return;
         };
         let mut own: [T; 6] = gather(token, self.increment, first.frames().start);
-        for (index, link) in self.links.batches.iter_mut().enumerate() {
+        let links = self.links.laws.iter().zip(&mut self.links.states);
+        for (index, (laws, state)) in links.enumerate() {
             let following = self.elements.get(index + 1).unwrap_or(first);
             let next: [T; 6] = gather(token, self.increment, following.frames().start);
-            let Some(laws) = &link.laws else {
+            let Some(laws) = laws else {
                 own = next;
                 continue;
             };
-            let kept = &link.state.geometry;
+            let kept = &state.geometry;
             let inverse = T::read(token, &kept[12]);
             let pair = PairGeometry {
                 axes: [at::<T>(token, kept, 0), at::<T>(token, kept, 3)],
@@ -514,8 +509,8 @@ impl Kernel for Moving<'_> {
                 shift.one_on(next_shift) - shift,
                 [turn, turn.one_on(next_turn)],
             );
-            extension.write(&mut link.state.predicted[0]);
-            across.write(&mut link.state.predicted[1..]);
+            extension.write(&mut state.predicted[0]);
+            across.write(&mut state.predicted[1..]);
             own = next;
         }
     }
