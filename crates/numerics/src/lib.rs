@@ -42,7 +42,6 @@ pub use implicit::{CarriedMotion, ImplicitSystem, MotionState, ResidualSize, Tan
 pub use integrator::{Integrator, StepOutcome, StepSettings};
 pub use measure::BlockMeasure;
 pub use newton::{NewtonFailure, NewtonSettings};
-pub use passes::negate;
 pub use sweep::Elimination;
 
 /// Three components, global axes unless said otherwise.

@@ -104,18 +104,3 @@ pub(crate) fn multiple(y: &mut [Vector6], factor: f64, x: &[Vector6]) {
     let (y, x) = (numbers_mut(y), numbers(x));
     pass(Multiple { y, factor, x }, count);
 }
-
-/// x <- -x
-pub fn negate(x: &mut [Vector6]) {
-    struct Negate<'a>(&'a mut [f64]);
-
-    impl Pass for Negate<'_> {
-        #[inline(always)]
-        fn step<T: Lane>(&mut self, token: T::Token, i: usize) {
-            write(-read::<T>(token, self.0, i), self.0, i);
-        }
-    }
-
-    let count = 6 * x.len();
-    pass(Negate(numbers_mut(x)), count);
-}

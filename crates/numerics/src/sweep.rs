@@ -65,7 +65,7 @@ impl Elimination {
         self.careful = Some(Box::new(Factorisation::new(topology)));
     }
 
-    /// Factorises `matrix` in place and solves for a first right-hand side: x <- A^-1 rhs, both
+    /// Factorises `matrix` in place and solves for a first right-hand side: x <- A^-1 x,
     /// (frame_count).
     ///
     /// # Errors
@@ -74,11 +74,9 @@ impl Elimination {
         &mut self,
         topology: &Topology,
         matrix: &mut BlockMatrix,
-        rhs: &[Vector6],
         x: &mut [Vector6],
     ) -> Result<(), FactorError> {
         let base = topology.chain_frames();
-        x.copy_from_slice(rhs);
         if let Some(pivoted) = &mut self.careful {
             pivoted.factorise(topology, matrix)?;
             pivoted.solve(topology, x);
@@ -454,7 +452,7 @@ mod tests {
         let mut x = rhs.clone();
         let mut factors = matrix.clone();
         elimination
-            .factorise_and_solve(&topology, &mut factors, &rhs, &mut x)
+            .factorise_and_solve(&topology, &mut factors, &mut x)
             .unwrap();
         check(&x);
         x.copy_from_slice(&rhs);
@@ -473,10 +471,9 @@ mod tests {
         let topology = Topology::new(vec![chain], 2);
         let mut matrix = BlockMatrix::zeros(&topology);
         (0..6).for_each(|k| matrix.diagonal[0].add_diagonal(k, 1.0));
-        let rhs = vec![Vector6::repeat(1.0); 2];
-        let mut x = rhs.clone();
+        let mut x = vec![Vector6::repeat(1.0); 2];
         let error = Elimination::new(&topology)
-            .factorise_and_solve(&topology, &mut matrix, &rhs, &mut x)
+            .factorise_and_solve(&topology, &mut matrix, &mut x)
             .unwrap_err();
         assert_eq!(error.frame, 1);
     }

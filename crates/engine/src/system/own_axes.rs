@@ -10,8 +10,9 @@ use catenix_numerics::{BlockMatrix, Vector3, Vector6};
 pub(super) struct OwnAxes {
     /// Blocks that are pairs of points, which have no axes.
     pairs: usize,
-    /// Sum of the increments since then, (n).
+    /// Sum of the increments since then, (n); of none as long as `still`.
     moved: Vec<Vector6>,
+    still: bool,
 }
 
 impl OwnAxes {
@@ -19,22 +20,36 @@ impl OwnAxes {
         OwnAxes {
             pairs,
             moved: vec![Vector6::zeros(); frame_count],
+            still: true,
         }
     }
 
-    /// Makes the derivatives of moments in global axes those of moments in own axes.
+    /// Makes the derivatives of moments in global axes those of moments in own axes, and
+    /// out <- -residual.
     ///
     /// Source: docs/theory/solver.md, eq. (6a).
-    pub(super) fn turn(&mut self, residual: &[Vector6], matrix: &mut BlockMatrix) {
-        self.moved.fill(Vector6::zeros());
-        let blocks = matrix.diagonal.iter_mut().zip(residual);
-        for (block, residual) in blocks.skip(self.pairs) {
-            block.add_quadrant(1, 1, &moment(residual).cross_matrix());
+    pub(super) fn turn(
+        &mut self,
+        residual: &[Vector6],
+        matrix: &mut BlockMatrix,
+        out: &mut [Vector6],
+    ) {
+        self.still = true;
+        let blocks = matrix.diagonal.iter_mut().zip(residual).zip(out);
+        for (k, ((block, residual), out)) in blocks.enumerate() {
+            *out = -residual;
+            if k >= self.pairs {
+                block.add_quadrant(1, 1, &moment(residual).cross_matrix());
+            }
         }
     }
 
     /// Adds an increment that is about to be applied.
     pub(super) fn moving(&mut self, increment: &[Vector6]) {
+        if std::mem::take(&mut self.still) {
+            self.moved.copy_from_slice(increment);
+            return;
+        }
         for (moved, increment) in self.moved.iter_mut().zip(increment) {
             *moved += increment;
         }
@@ -46,6 +61,9 @@ impl OwnAxes {
     pub(super) fn opposite(&self, residual: &[Vector6], out: &mut [Vector6]) {
         for (out, residual) in out.iter_mut().zip(residual) {
             *out = -residual;
+        }
+        if self.still {
+            return;
         }
         let frames = out.iter_mut().zip(residual).zip(&self.moved);
         for ((out, residual), moved) in frames.skip(self.pairs) {
@@ -73,7 +91,9 @@ mod tests {
         let topology = Topology::new(vec![], 2);
         let mut matrix = BlockMatrix::zeros(&topology);
         let mut axes = OwnAxes::new(2, 1);
-        axes.turn(&[RESIDUAL; 2], &mut matrix);
+        let mut opposite = [Vector6::zeros(); 2];
+        axes.turn(&[RESIDUAL; 2], &mut matrix, &mut opposite);
+        assert_eq!(opposite, [-RESIDUAL; 2]);
         let m = moment(&RESIDUAL);
         for column in 0..3 {
             let h = 1e-6;

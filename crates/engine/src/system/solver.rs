@@ -3,7 +3,7 @@
 use catenix_numerics::{
     Block6, BlockLu, BlockMatrix, BlockMeasure, CarriedMotion, Elimination, ExplicitSystem,
     Factorisation, ImplicitSystem, Matrix3, MotionState, ResidualSize, TangentWeights, Vector3,
-    Vector6, negate,
+    Vector6,
 };
 
 use super::System;
@@ -321,12 +321,10 @@ impl ImplicitSystem for SystemSolver<'_> {
     fn solve(&mut self, residual: &[Vector6], increment: &mut [Vector6]) -> Result<(), usize> {
         let topology = &self.system.topology;
         self.factorisations += 1;
-        self.own_axes.turn(residual, &mut self.matrix);
+        self.own_axes.turn(residual, &mut self.matrix, increment);
         self.factors
-            .factorise_and_solve(topology, &mut self.matrix, residual, increment)
-            .map_err(|error| error.frame)?;
-        negate(increment);
-        Ok(())
+            .factorise_and_solve(topology, &mut self.matrix, increment)
+            .map_err(|error| error.frame)
     }
 
     fn solve_again(&mut self, residual: &[Vector6], increment: &mut [Vector6]) {
