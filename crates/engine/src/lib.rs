@@ -14,6 +14,7 @@ pub mod system;
 
 pub use analysis::dynamics::{DynamicsError, DynamicsReport, SolverStatistics, simulate};
 pub use analysis::energy::EnergyAccount;
+pub use analysis::equilibrium::Equilibrium;
 pub use analysis::modes::{
     Mode, ModeKind, Modes, ModesError, ModesProgress, Motion, Proof, find_modes,
 };

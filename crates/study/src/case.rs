@@ -16,6 +16,7 @@ use catenix_results::{
 use cpu_time::ThreadTime;
 
 use crate::accuracy::{Wanted, doubts, refined};
+use crate::equilibria::Equilibria;
 use crate::watch::Watch;
 
 /// Elapsed time between two looks of the watch.
@@ -53,7 +54,8 @@ pub(crate) struct Account {
     discretisation: Option<Discretisation>,
 }
 
-/// Computes a case and writes it into `recorder`.
+/// Computes a case and writes it into `store`. `equilibria` are those of cases that were computed
+/// before; the results do not depend on them.
 ///
 /// A solver that gives up makes a failed case, which is a result too; an error is a store that
 /// cannot be written.
@@ -61,6 +63,7 @@ pub fn compute_case(
     case: &LoadCase,
     store: &ResultStore,
     accuracy: Option<f64>,
+    equilibria: &Equilibria,
     watch: &dyn Watch,
 ) -> Result<CaseSummary, StoreError> {
     let mut account = Account::begin();
@@ -68,7 +71,7 @@ pub fn compute_case(
     let mut recorder = store.record_case(&case);
     let end = match halt {
         Some(halt) => Err(halt.into()),
-        None => run_case(&case, &mut recorder, watch, &mut account),
+        None => run_case(&case, &mut recorder, equilibria, watch, &mut account),
     };
     let (status, error) = match end {
         Ok(()) => (Status::Complete, None),
@@ -124,11 +127,22 @@ pub fn compute_statics(case: &LoadCase, accuracy: Option<f64>, watch: &dyn Watch
 fn run_case(
     case: &LoadCase,
     recorder: &mut CaseRecorder,
+    equilibria: &Equilibria,
     watch: &dyn Watch,
     account: &mut Account,
 ) -> Result<(), Stop> {
     let system = system_of(&case.model).map_err(Halt::Failed)?;
-    let start = settle(&system, watch, account)?;
+    let start = match equilibria.of(&system) {
+        Some(start) => {
+            account.found(&start);
+            start
+        }
+        None => {
+            let start = settle(&system, watch, account)?;
+            equilibria.keep(&start);
+            start
+        }
+    };
     recorder
         .record_static(case, &EngineSample(&start.view()))
         .map_err(Stop::Store)?;
@@ -189,11 +203,7 @@ pub(crate) fn settle<'a>(
         flow(watch.stop())
     })
     .map_err(statics_halt)?;
-    account.statics = Some(StaticsFacts {
-        iterations: solution.iterations,
-        residual_n: solution.residual_n,
-    });
-    account.warnings.extend_from_slice(&solution.warnings);
+    account.found(&solution);
     Ok(solution)
 }
 
@@ -207,6 +217,14 @@ impl Account {
             warnings: Vec::new(),
             discretisation: None,
         }
+    }
+
+    fn found(&mut self, solution: &StaticSolution<'_>) {
+        self.statics = Some(StaticsFacts {
+            iterations: solution.iterations,
+            residual_n: solution.residual_n,
+        });
+        self.warnings.extend_from_slice(&solution.warnings);
     }
 
     /// The case with the mesh and step that `accuracy` asks for. The time that the choice takes is

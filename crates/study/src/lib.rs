@@ -8,6 +8,7 @@
 mod accuracy;
 mod case;
 mod comparison;
+mod equilibria;
 mod modes;
 mod parallel;
 mod path;
@@ -16,6 +17,7 @@ mod watch;
 
 pub use case::{choose_for_accuracy, compute_case, compute_statics};
 pub use comparison::{ComparisonSettings, MemoryMeter, compare_formulations};
+pub use equilibria::Equilibria;
 pub use modes::compute_modes;
 pub use parallel::in_parallel;
 pub use path::compute_path;

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use catenix_model::file::parse_study;
 use catenix_results::{Discretisation, Provenance, ResultStore};
-use catenix_study::{compute_case, in_parallel};
+use catenix_study::{Equilibria, compute_case, in_parallel};
 
 /// A pipe under a ship that moves, with a buffer at its lower end, and a slack hose from there to
 /// the bottom, in a current.
@@ -86,7 +86,8 @@ fn true_errors_of_a_motion_stay_within_twice_their_estimates() {
             model_text: SYSTEM.to_owned(),
         };
         let store = ResultStore::create(&folder, &study, &[case], &provenance).unwrap();
-        let summary = compute_case(case, &store, Some(accuracy), &()).unwrap();
+        let summary =
+            compute_case(case, &store, Some(accuracy), &Equilibria::default(), &()).unwrap();
         assert_eq!(summary.error, None);
         summary.discretisation.unwrap()
     };

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use catenix_model::file::parse_study;
 use catenix_results::{CaseSummary, Provenance, ResultStore};
-use catenix_study::{compute_case, in_parallel};
+use catenix_study::{Equilibria, compute_case, in_parallel};
 
 const SEA_TRIAL: &str = include_str!("../../../examples/sea-trial-1km.toml");
 const STEP: &str = "step = \"0.1 s\"\n";
@@ -34,7 +34,7 @@ fn run(text: &str, case: &str, accuracy: Option<f64>) -> CaseSummary {
         model_text: text.to_owned(),
     };
     let store = ResultStore::create(directory.path(), &study, &[case], &provenance).unwrap();
-    let summary = compute_case(case, &store, accuracy, &()).unwrap();
+    let summary = compute_case(case, &store, accuracy, &Equilibria::default(), &()).unwrap();
     assert_eq!(summary.error, None);
     summary
 }

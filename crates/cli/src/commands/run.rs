@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use catenix_report::{study_chart, write_figure};
 use catenix_results::{Provenance, ResultStore, StoreError, StoredStudy, Summary};
-use catenix_study::compute_case;
+use catenix_study::{Equilibria, compute_case};
 use serde::Serialize;
 
 use super::statics::study_summary;
@@ -44,8 +44,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<Exit, Failure> {
         };
         view::start(store.path(), &listen)?;
     }
+    let equilibria = Equilibria::default();
     let results = for_each_case(&cases, &args.work, &interrupt, |case, progress| {
-        compute_case(case, &store, args.accuracy.accuracy, progress)
+        compute_case(case, &store, args.accuracy.accuracy, &equilibria, progress)
     });
     let results = results
         .into_iter()

@@ -2,6 +2,7 @@
 
 pub mod dynamics;
 pub mod energy;
+pub mod equilibrium;
 mod free_motion;
 pub mod modes;
 pub mod path;

@@ -9,7 +9,7 @@ use catenix_numerics::time_table::{smooth_step, smooth_step_curve};
 use catenix_numerics::{Matrix3, Vector3, so3, spline::Spline};
 
 /// State of a prescribed body.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RigidMotion {
     /// Position of the origin, global (3) [m].
     pub position: Vector3,
