@@ -180,9 +180,10 @@ impl Run {
         for (name, values) in &self.values {
             assert!(values.iter().all(|v| v.is_finite()), "{name} is not finite");
         }
-        // The defaults of [statics] and [dynamics].
+        // The default of [statics], and ten times that of [dynamics]: docs/theory/solver.md,
+        // eq. (7a), for steps that control their error.
         assert!(self.statics.residual <= 1e-7, "{}", self.statics.residual);
-        assert!(self.residual <= 1e-5, "residual {:.1e}", self.residual);
+        assert!(self.residual <= 1e-4, "residual {:.1e}", self.residual);
         let energy = self.report.energy;
         assert!(
             energy.imbalance.abs() < imbalance,
