@@ -60,7 +60,9 @@ table! {
         /// Of bdf: the highest order, 1 to 5; absent: 2. From 3 on, oscillations that are hardly
         /// damped may grow.
         max_order: Option<Count>,
-        /// Largest residual force at any element, as a fraction of the system's reference force.
+        /// Largest residual force at any element, as a fraction of the system's reference force. Ten
+        /// times as much where steps control their error and what is left to move is a hundredth of
+        /// it.
         tolerance: Positive<Dimensionless> = 1e-5,
         /// Most Newton iterations per step before the step is cut.
         max_iterations: Count = 12,
