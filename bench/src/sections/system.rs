@@ -200,7 +200,7 @@ fn charts(data: &Value) -> Result<Figures, String> {
         ChartAxis::logarithmic("Largest error of offset, top tension and hose force", "%"),
         curves.collect(),
     )
-    .with_note("Each curve from above: steps of 0.4 s, 0.2 s and 0.1 s.");
+    .with_note("Each curve from the left: steps of 0.4 s, 0.2 s and 0.1 s.");
     Ok(vec![("system".to_owned(), chart)])
 }
 
