@@ -1,6 +1,6 @@
 //! Newton's method on the residual of one implicit step, common to all integrators.
 //!
-//! Source: docs/theory/integration.md, eq. (6); docs/theory/solver.md, eqs. (5) to (7).
+//! Source: docs/theory/integration.md, eq. (6); docs/theory/solver.md, eqs. (5) to (7a).
 
 use crate::Vector6;
 use crate::implicit::{ImplicitSystem, MotionState, ResidualSize, TangentWeights};
@@ -31,7 +31,8 @@ const ABOVE_TOLERANCE: f64 = 10.0;
 /// When Newton's method stops.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NewtonSettings {
-    /// Largest residual accepted [N].
+    /// Largest residual accepted [N]; ten times as much where a step's error is controlled and what
+    /// is left to move is little beside it.
     pub tolerance_newtons: f64,
     /// Iterations after which the step is given up.
     pub max_iterations: usize,

@@ -54,26 +54,21 @@ pub fn gather<T: Lane, I: Record, const R: usize>(
     // Whole registers are read, which may reach beyond the last record of the lanes.
     let extent = I::LENGTH * (T::COUNT - 1) + R.max(T::COUNT);
     match numbers.get(begin..begin + extent) {
-        Some(numbers) => {
-            squares::<T, I, R>(token, |at| T::read_some(token, &numbers[at..at + T::COUNT]))
-        }
+        Some(numbers) => squares::<T, I, R, true>(token, numbers, 0),
         None => {
-            let most = I::LENGTH * (records.len() - 1 - first);
-            let numbers = &numbers[begin..];
-            squares::<T, I, R>(token, |at| {
-                let at = at.min(most + at % I::LENGTH);
-                T::read_part(token, &numbers[at..])
-            })
+            let last = I::LENGTH * (records.len() - 1 - first);
+            squares::<T, I, R, false>(token, &numbers[begin..], last)
         }
     }
 }
 
-/// The first `R` numbers of each record, from what is `read` at so many numbers behind the start of
-/// the first one.
+/// The first `R` numbers of each record. Unless they are `WHOLE`, with whole registers to be read
+/// for every lane, the last record begins at `last` and is that of the lanes behind it.
 #[inline(always)]
-fn squares<T: Lane, I: Record, const R: usize>(
+fn squares<T: Lane, I: Record, const R: usize, const WHOLE: bool>(
     token: T::Token,
-    read: impl Fn(usize) -> T,
+    numbers: &[f64],
+    last: usize,
 ) -> [T; R] {
     let mut values = [T::splat(token, 0.0); R];
     let mut start = 0;
@@ -83,7 +78,12 @@ fn squares<T: Lane, I: Record, const R: usize>(
         let mut square = [values[0]; MOST_LANES];
         let mut lane = 0;
         while lane < T::COUNT {
-            square[lane] = read(I::LENGTH * lane + from);
+            let at = I::LENGTH * lane;
+            square[lane] = if WHOLE {
+                T::read_some(token, &numbers[at + from..at + from + T::COUNT])
+            } else {
+                T::read_part(token, &numbers[at.min(last) + from..])
+            };
             lane += 1;
         }
         let square = T::transposed(square);
