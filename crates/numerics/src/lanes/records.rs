@@ -1,7 +1,7 @@
 //! Records of numbers (a position, a velocity, a block of the matrix) into lanes and back, one
 //! record per lane, by squares that are transposed in registers.
 
-use super::{Lane, MOST_LANES};
+use super::{Lane, MOST_LANES, Row};
 
 /// A run of numbers that is stored record after record.
 pub trait Record: Copy {
@@ -133,9 +133,7 @@ fn scatter<T: Lane, I: Record, const R: usize>(
     count: usize,
     add: bool,
 ) {
-    let count = count.min(T::COUNT);
-    let begin = I::LENGTH * first;
-    let window = &mut I::numbers_mut(records)[begin..begin + I::LENGTH * count];
+    let records = &mut records[first..first + count.min(T::COUNT)];
     let mut start = 0;
     while start < R {
         let mut square = [values[start]; MOST_LANES];
@@ -147,34 +145,57 @@ fn scatter<T: Lane, I: Record, const R: usize>(
         let square = T::transposed(square);
         let mut lane = 0;
         while lane < T::COUNT {
-            if lane == count {
+            let Some(record) = records.get_mut(lane) else {
                 break;
-            }
-            let at = I::LENGTH * lane + start;
+            };
+            let numbers = I::numbers_mut(std::slice::from_mut(record));
             if start + T::COUNT <= R {
-                let room = &mut window[at..at + T::COUNT];
-                let own = square[lane];
-                let sum = if add {
-                    T::read_some(own.token(), room) + own
-                } else {
-                    own
-                };
-                sum.write_some(room);
+                put_some(square[lane], &mut numbers[start..start + T::COUNT], add);
             } else {
                 // Not a number further: what is written in one piece and read in another waits.
                 let mut row = [0.0; MOST_LANES];
                 square[lane].write(&mut row);
-                let room = &mut window[at..at + R - start];
-                let mut k = 0;
-                while k < R - start {
-                    room[k] = if add { room[k] + row[k] } else { row[k] };
-                    k += 1;
+                let mut at = start;
+                if (R % T::COUNT) & 4 != 0 {
+                    put_part::<4>(&row, at - start, numbers, at, add);
+                    at += 4;
+                }
+                if (R % T::COUNT) & 2 != 0 {
+                    put_part::<2>(&row, at - start, numbers, at, add);
+                    at += 2;
+                }
+                if (R % T::COUNT) & 1 != 0 {
+                    put_part::<1>(&row, at - start, numbers, at, add);
                 }
             }
             lane += 1;
         }
         start += T::COUNT;
     }
+}
+
+#[inline(always)]
+fn put_some<T: Lane>(own: T, room: &mut [f64], add: bool) {
+    let sum = if add {
+        T::read_some(own.token(), room) + own
+    } else {
+        own
+    };
+    sum.write_some(room);
+}
+
+/// `N` numbers of a row, from `from` on, to numbers from `at` on. Pieces of known length, since a
+/// loop over them would become a call.
+#[inline(always)]
+fn put_part<const N: usize>(row: &Row, from: usize, numbers: &mut [f64], at: usize, add: bool) {
+    let (row, room) = (&row[from..from + N], &mut numbers[at..at + N]);
+    let mut sums = [0.0; N];
+    let mut k = 0;
+    while k < N {
+        sums[k] = if add { room[k] + row[k] } else { row[k] };
+        k += 1;
+    }
+    room.copy_from_slice(&sums);
 }
 
 #[cfg(test)]
