@@ -318,7 +318,8 @@ impl Simulation<'_> {
                     proposal = 2.0 * asked;
                     self.calm = Calm::new();
                 } else if self.calm.steps >= PATIENCE {
-                    if self.calm.least > WORTHWHILE * asked {
+                    // The largest size is worth little, too: no other change follows it.
+                    if self.calm.least > (WORTHWHILE * asked).min(max) {
                         proposal = self.calm.least.min(2.0 * asked);
                     }
                     self.calm = Calm::new();
