@@ -6,6 +6,7 @@
 //! Mech. Mach. Theory 48 (2012) 121-137, here with left multiplication of global rotations.
 
 use crate::alpha_passes::{self, Guess, Start};
+use crate::forecast::Forecast;
 use crate::implicit::{CarriedMotion, ImplicitSystem, MotionState, TangentWeights};
 use crate::integrator::{self, Integrator, StepOutcome, StepSettings};
 use crate::newton::{Newton, NewtonFailure, Stage};
@@ -65,14 +66,13 @@ impl GeneralisedAlpha {
             stage: AlphaStage {
                 parameters,
                 algorithmic: state.acceleration.clone(),
-                change: zeros.clone(),
                 last_step: 0.0,
                 carried: CarriedMotion::none(n),
                 trial_carried: CarriedMotion::none(n),
+                forecast: Forecast::new(n),
                 carries: None,
                 placed_for: 0.0,
                 trial: state.clone(),
-                trial_change: zeros.clone(),
                 step: 0.0,
                 guess: Guess {
                     travel: zeros.clone(),
@@ -106,7 +106,7 @@ impl Integrator for GeneralisedAlpha {
         let solution = self
             .newton
             .solve(system, end_time, &mut self.stage, settings)?;
-        let local_error = self.stage.local_error(system);
+        let local_error = self.stage.local_error(system, self.newton.room());
         Ok(StepOutcome {
             iterations: solution.iterations,
             residual: solution.residual,
@@ -124,7 +124,7 @@ impl Integrator for GeneralisedAlpha {
         let stage = &mut self.stage;
         stage.state.acceleration.copy_from_slice(acceleration);
         stage.algorithmic.copy_from_slice(acceleration);
-        stage.change.fill(Vector6::zeros());
+        stage.forecast.clear();
         stage.placed_for = 0.0;
         stage.carries = None;
     }
@@ -137,8 +137,9 @@ struct AlphaStage {
     state: MotionState,
     /// Algorithmic acceleration of the current state.
     algorithmic: Vec<Vector6>,
-    /// Change of acceleration over the last step beside what is carried, and its size [s].
-    change: Vec<Vector6>,
+    /// Of the algorithmic acceleration.
+    forecast: Forecast,
+    /// Size of the last step [s].
     last_step: f64,
     /// Motion that the supports impose on the current state, and on the trial state.
     carried: CarriedMotion,
@@ -148,8 +149,6 @@ struct AlphaStage {
     /// Step size for which `algorithmic` is placed in time; 0 before the first step.
     placed_for: f64,
     trial: MotionState,
-    /// Change of acceleration to the trial state.
-    trial_change: Vec<Vector6>,
     /// Size of the step to the trial state [s].
     step: f64,
     /// Where constant algorithmic acceleration leads, once the trial state is elsewhere.
@@ -176,21 +175,22 @@ impl AlphaStage {
     }
 
     fn accept(&mut self) {
+        self.forecast.keep(&self.algorithmic, self.step);
         if self.corrected {
             let by_travel = 1.0 / (self.parameters.beta * self.step * self.step);
             let ends = [&self.travel, &self.guess.travel];
             alpha_passes::move_algorithmic(&mut self.algorithmic, by_travel, ends);
         }
+        self.forecast.learn(&self.algorithmic);
         if self.carries == Some(true) {
             std::mem::swap(&mut self.carried, &mut self.trial_carried);
         }
-        std::mem::swap(&mut self.change, &mut self.trial_change);
         self.last_step = self.step;
         self.placed_for = self.step;
         std::mem::swap(&mut self.state, &mut self.trial);
     }
 
-    /// Constant algorithmic acceleration over the step.
+    /// The algorithmic acceleration that is forecast, or else a constant one, over the step.
     fn predict(&mut self, step: f64) {
         self.step = step;
         // The algorithmic acceleration belongs to a time (alpha_m - alpha_f) h after the step's
@@ -199,8 +199,11 @@ impl AlphaStage {
             let AlphaParameters {
                 alpha_m, alpha_f, ..
             } = self.parameters;
-            let shift = (alpha_m - alpha_f) * (step - self.placed_for);
-            add_multiple(&mut self.algorithmic, shift / self.last_step, &self.change);
+            let early = alpha_m - alpha_f;
+            let since_last = self.last_step + early * (self.placed_for - self.last_step);
+            let share = early * (step - self.placed_for) / since_last;
+            let ends = self.algorithmic.iter_mut().zip(self.forecast.last());
+            ends.for_each(|(newest, before)| *newest += (*newest - before) * share);
             self.placed_for = step;
         }
         let carries = self.carries == Some(true);
@@ -212,6 +215,15 @@ impl AlphaStage {
         let alpha_f = self.parameters.alpha_f;
         alpha_passes::predict(&start, step, alpha_f, &mut self.travel, &mut self.trial);
         self.corrected = false;
+        if let Some(weights) = self.forecast.weights(step) {
+            self.keep_guess();
+            let by_algorithmic = self.parameters.beta * step * step;
+            let steady = &self.algorithmic;
+            self.forecast
+                .add_change(&weights, steady, by_algorithmic, &mut self.travel);
+            let by_travel = self.by_travel();
+            alpha_passes::follow(&self.travel, &self.guess, by_travel, &mut self.trial);
+        }
         self.move_configuration();
     }
 
@@ -246,16 +258,16 @@ impl AlphaStage {
         ]
     }
 
-    /// Size of the local error of the trial step [m].
+    /// Size of the local error of the trial step [m]; `change` is room for the change of acceleration, (n).
     ///
     /// Source: docs/theory/integration.md, eq. (8).
-    fn local_error(&mut self, system: &dyn ImplicitSystem) -> f64 {
+    fn local_error(&self, system: &dyn ImplicitSystem, change: &mut [Vector6]) -> f64 {
         let carries = self.carries == Some(true);
         let carried = carries.then_some([&self.carried, &self.trial_carried]);
         let ends = [&self.state, &self.trial];
-        alpha_passes::change_of_acceleration(ends, carried, &mut self.trial_change);
+        alpha_passes::change_of_acceleration(ends, carried, change);
         let factor = self.parameters.error_coefficient() * self.step * self.step;
-        factor * system.increment_size(&self.trial_change)
+        factor * system.increment_size(change)
     }
 }
 

@@ -15,6 +15,7 @@ mod differences;
 mod dispatch;
 pub mod eigen;
 mod explicit;
+mod forecast;
 mod frames;
 mod generalised_alpha;
 mod implicit;

@@ -12,7 +12,7 @@ const UNCHECKED_ITERATIONS: usize = 4;
 const GOOD_REDUCTION: f64 = 0.5;
 /// Share of the residual that an iteration with a new matrix may leave, for that matrix to serve
 /// again: where it leaves more, the problem bends too much for an old one.
-const WORTH_REUSE: f64 = 0.025;
+const WORTH_REUSE: f64 = 0.05;
 /// Growth of the residual since the first one, after which a solution is given up as lost.
 const LOST: f64 = 1e3;
 /// Solutions that get new matrices only, after an old one did not do.
@@ -95,6 +95,11 @@ impl Newton {
             converged: false,
             pause: 0,
         }
+    }
+
+    /// Room for a vector, (n), that is free between solutions.
+    pub(crate) fn room(&mut self) -> &mut [Vector6] {
+        &mut self.increment
     }
 
     /// Moves `stage` until its residual at `time` is small enough.
