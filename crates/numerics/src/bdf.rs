@@ -324,6 +324,7 @@ impl Integrator for Bdf {
     }
 
     fn restart(&mut self, acceleration: &[Vector6]) {
+        self.newton.restart();
         self.stage.state.acceleration.copy_from_slice(acceleration);
         self.past_count = 0;
         self.steps = 0;
@@ -361,6 +362,10 @@ impl BdfStage {
 impl Stage for BdfStage {
     fn trial(&self) -> &MotionState {
         &self.trial
+    }
+
+    fn travel(&self) -> &[Vector6] {
+        &self.travel
     }
 
     /// Source: docs/theory/integration.md, eq. (13).

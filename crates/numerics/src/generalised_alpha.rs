@@ -121,6 +121,7 @@ impl Integrator for GeneralisedAlpha {
     }
 
     fn restart(&mut self, acceleration: &[Vector6]) {
+        self.newton.restart();
         let stage = &mut self.stage;
         stage.state.acceleration.copy_from_slice(acceleration);
         stage.algorithmic.copy_from_slice(acceleration);
@@ -274,6 +275,10 @@ impl AlphaStage {
 impl Stage for AlphaStage {
     fn trial(&self) -> &MotionState {
         &self.trial
+    }
+
+    fn travel(&self) -> &[Vector6] {
+        &self.travel
     }
 
     fn linearise(&mut self) {
@@ -481,6 +486,37 @@ mod tests {
             assert!(off <= 0.01 * allowed, "off by {off} at {tolerance}");
         }
         assert!(earlier > 0, "some solution ends earlier");
+    }
+
+    #[test]
+    fn small_steps_share_a_matrix_and_large_ones_do_not() {
+        let matrices = |n: usize| {
+            let mut system = Tumbler::tied();
+            let parameters = AlphaParameters::with_spectral_radius(0.8);
+            let mut alpha = GeneralisedAlpha::new(parameters, system.start());
+            let (_, iterations) = drive(&mut alpha, &mut system, &vec![4.0 / n as f64; n]);
+            (system.matrices, iterations)
+        };
+        let (few, iterations) = matrices(20_000);
+        assert!(
+            few < 5000 && iterations >= 20_000,
+            "{few} matrices in {iterations} iterations"
+        );
+        let (many, _) = matrices(40);
+        assert!(many >= 40, "{many} matrices in 40 steps");
+    }
+
+    #[test]
+    fn a_restart_forgets_the_matrix() {
+        let mut system = Tumbler::tied();
+        let parameters = AlphaParameters::with_spectral_radius(0.8);
+        let mut alpha = GeneralisedAlpha::new(parameters, system.start());
+        drive(&mut alpha, &mut system, &[1e-3; 100]);
+        // The system makes another matrix in between, as it does to find accelerations.
+        system.matrix.fill(f64::NAN);
+        let acceleration = alpha.state().acceleration.clone();
+        alpha.restart(&acceleration);
+        drive(&mut alpha, &mut system, &[1e-3; 10]);
     }
 
     #[test]

@@ -123,6 +123,12 @@ pub trait ImplicitSystem {
         let _ = increment;
     }
 
+    /// Told how far the first guess of a step is from the last solution, (n), where the matrix of
+    /// that solution is to serve again.
+    fn stepping(&mut self, travel: &[Vector6]) {
+        let _ = travel;
+    }
+
     /// The largest residual.
     fn residual_size(&self, residual: &[Vector6]) -> ResidualSize;
 

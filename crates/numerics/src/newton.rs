@@ -17,6 +17,14 @@ const WORTH_REUSE: f64 = 0.05;
 const LOST: f64 = 1e3;
 /// Solutions that get new matrices only, after an old one did not do.
 const PAUSE: usize = 3;
+/// Iterations of a step that has no new matrix, at most, for the next one to try without as well.
+const CHEAP: usize = 2;
+/// Solutions that begin with a new matrix after one that took more, at first and at most: each such
+/// pause is twice as long as the one before.
+const FIRST_REFRESH: usize = 1;
+const LONGEST_REFRESH: usize = 64;
+/// Difference of two steps' sizes with which a matrix serves both, over their size.
+const SAME: f64 = 1e-3;
 /// Most iterations in a row with an old matrix.
 const MOST_REUSES: usize = 3;
 /// Most halvings of an increment.
@@ -63,6 +71,9 @@ pub(crate) trait Stage {
     /// The trial state.
     fn trial(&self) -> &MotionState;
 
+    /// Travel from the last accepted state to the trial state, (n).
+    fn travel(&self) -> &[Vector6];
+
     /// Prepares [`Self::weights`] and [`Self::correct`] at the trial state.
     fn linearise(&mut self);
 
@@ -84,6 +95,11 @@ pub(crate) struct Newton {
     converged: bool,
     /// Solutions to come that get a new matrix in every iteration.
     pause: usize,
+    /// Factor on velocities of the matrix that is factorised, if there is one [1/s].
+    factorised: Option<f64>,
+    /// Solutions to come that begin with a new matrix, and the next number of such.
+    refresh: usize,
+    next_refresh: usize,
 }
 
 impl Newton {
@@ -94,12 +110,20 @@ impl Newton {
             expected: 0,
             converged: false,
             pause: 0,
+            factorised: None,
+            refresh: 0,
+            next_refresh: FIRST_REFRESH,
         }
     }
 
     /// Room for a vector, (n), that is free between solutions.
     pub(crate) fn room(&mut self) -> &mut [Vector6] {
         &mut self.increment
+    }
+
+    /// Forgets the matrix: the system has made another one.
+    pub(crate) fn restart(&mut self) {
+        self.factorised = None;
     }
 
     /// Moves `stage` until its residual at `time` is small enough.
@@ -115,18 +139,33 @@ impl Newton {
         // What the system knows of the last solution helps where this one follows it.
         if !std::mem::take(&mut self.converged) {
             system.begin();
+            self.factorised = None;
+        }
+        // The factor on velocities is one over the step, but for a constant.
+        let rate = stage.weights().velocity;
+        let same = self
+            .factorised
+            .is_some_and(|of| (of - rate).abs() <= SAME * rate);
+        let unaided = same && self.pause == 0 && self.refresh == 0;
+        self.refresh = self.refresh.saturating_sub(1);
+        if unaided {
+            system.stepping(stage.travel());
         }
         let mut iterations = 0;
         let (mut previous, mut first) = (f64::INFINITY, None);
         let mut may_reuse = self.pause == 0;
         self.pause = self.pause.saturating_sub(1);
-        let mut reuses = 0;
+        let (mut reuses, mut renewed) = (0, false);
         loop {
             // Where convergence is likely, or the old matrix may do, the residual alone is
             // evaluated. Elsewhere residual and matrix come from one evaluation.
             let likely = may_reuse || iterations >= self.expected.min(UNCHECKED_ITERATIONS);
             let mut converged = false;
             let mut reuse = false;
+            if iterations == 0 && unaided {
+                system.assemble(time, stage.trial(), None, &mut self.residual);
+                reuse = true;
+            }
             if iterations > 0 && likely {
                 let residual = self.search_line(system, time, stage, iterations, previous);
                 converged = residual <= settings.tolerance_newtons
@@ -134,7 +173,10 @@ impl Newton {
                         && self.next_increment(system, residual, previous) <= unsolved;
                 if reuses > 0 && residual > GOOD_REDUCTION * previous && !converged {
                     may_reuse = false;
-                    self.pause = PAUSE;
+                    // Of a matrix of this step more was to be expected.
+                    if !unaided {
+                        self.pause = PAUSE;
+                    }
                 }
                 let worth = reuses > 0 || residual < WORTH_REUSE * previous;
                 reuse = may_reuse && worth && !converged && reuses < MOST_REUSES;
@@ -142,6 +184,7 @@ impl Newton {
             if !converged && !reuse {
                 stage.linearise();
                 let weights = stage.weights();
+                self.factorised = None;
                 system.assemble(time, stage.trial(), Some(&weights), &mut self.residual);
             }
             let residual = system.residual_size(&self.residual);
@@ -160,6 +203,12 @@ impl Newton {
             previous = residual.newtons;
             if converged || residual.newtons <= settings.tolerance_newtons {
                 self.expected = iterations;
+                if unaided && !renewed && iterations <= CHEAP {
+                    self.next_refresh = FIRST_REFRESH;
+                } else if unaided {
+                    self.refresh = self.next_refresh;
+                    self.next_refresh = LONGEST_REFRESH.min(2 * self.next_refresh);
+                }
                 self.converged = true;
                 return Ok(NewtonOutcome {
                     iterations,
@@ -182,6 +231,8 @@ impl Newton {
                         singular: true,
                         ..failure
                     })?;
+                self.factorised = Some(rate);
+                renewed = true;
             }
             iterations += 1;
             system.moving(&self.increment);

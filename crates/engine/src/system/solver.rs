@@ -338,6 +338,10 @@ impl ImplicitSystem for SystemSolver<'_> {
         self.lines.moving(self.system, increment);
     }
 
+    fn stepping(&mut self, travel: &[Vector6]) {
+        self.own_axes.moving(travel);
+    }
+
     fn residual_size(&self, residual: &[Vector6]) -> ResidualSize {
         let (newtons, frame) = self.residual_measure.largest(residual);
         ResidualSize { newtons, frame }
