@@ -139,6 +139,20 @@ struct ProductsWith<'a> {
     past: [&'a [f64]; TERMS],
 }
 
+impl ProductsWith<'_> {
+    /// Adds the products of the numbers from `i` on, as many as there are lanes.
+    #[inline(always)]
+    fn add<T: Lane>(&self, token: T::Token, i: usize, sums: &mut [T; TERMS + 1]) {
+        let newest = read::<T>(token, self.newest, i);
+        sums[0] = newest.mul_add(newest, sums[0]);
+        let mut k = 0;
+        while k < TERMS {
+            sums[k + 1] = newest.mul_add(read(token, self.past[k], i), sums[k + 1]);
+            k += 1;
+        }
+    }
+}
+
 impl Kernel for ProductsWith<'_> {
     type Output = [f64; TERMS + 1];
 
@@ -147,19 +161,16 @@ impl Kernel for ProductsWith<'_> {
         let mut sums = [T::splat(token, 0.0); TERMS + 1];
         let count = self.newest.len();
         let mut i = 0;
-        while i < count {
-            // Behind the last number there are zeros.
-            let newest = T::read_part(token, &self.newest[i..]);
-            sums[0] = newest.mul_add(newest, sums[0]);
-            let mut k = 0;
-            while k < TERMS {
-                let old = T::read_part(token, &self.past[k][i..]);
-                sums[k + 1] = newest.mul_add(old, sums[k + 1]);
-                k += 1;
-            }
+        while i + T::COUNT <= count {
+            self.add(token, i, &mut sums);
             i += T::COUNT;
         }
         let mut totals = [0.0; TERMS + 1];
+        // What does not fill a register.
+        while i < count {
+            self.add((), i, &mut totals);
+            i += 1;
+        }
         let mut k = 0;
         while k <= TERMS {
             let mut row = [0.0; MOST_LANES];
