@@ -152,6 +152,14 @@ fn six(x: &Vector6) -> Six {
     room
 }
 
+/// x <- column
+#[inline(always)]
+fn put<S: Simd, const N: usize>(column: Column<S, N>, x: &mut Vector6) {
+    let mut room = [0.0; 8];
+    column.write(&mut room);
+    x.as_mut_slice().copy_from_slice(&room[..6]);
+}
+
 /// A chain on the way through its elimination.
 struct Sweep<S: Simd, const N: usize> {
     chain: usize,
@@ -209,47 +217,30 @@ impl<S: Simd, const N: usize> Sweep<S, N> {
             inverse = Column::all_of_block(s, &found);
         }
         Column::write_block(s, &inverse, &mut matrix.diagonal[k]);
+        let value = column::times_six(s, &inverse, &self.rhs);
         let mut solved = [0.0; 8];
-        column::times_six(s, &inverse, &self.rhs).write(&mut solved);
-        x[k].as_mut_slice().copy_from_slice(&solved[..6]);
+        value.write(&mut solved);
+        put(value, &mut x[k]);
         self.step += 1;
         let last = self.step == self.order.len();
         if last && self.order.far.is_none() && self.border.is_none() {
             return false;
         }
         let (ahead_block, back_block) = self.order.link_mut(self.step - 1, self.chain, matrix);
-        let mut ahead = inverse;
-        let mut j = 0;
-        while j < 6 {
-            ahead[j] = column::times_six(s, &inverse, ahead_block.column(j));
-            j += 1;
-        }
-        Column::write_block(s, &ahead, ahead_block);
+        column::multiply(s, &inverse, ahead_block);
         let back = Column::all_of_block(s, back_block);
         if let (Some(border), Some(near)) = (&mut self.border, self.order.near) {
             let kept = &mut factors.borders[self.chain][self.step - 1];
-            kept.row = border[1];
-            let mut columns = inverse;
-            let mut j = 0;
-            while j < 6 {
-                columns[j] = column::times_six(s, &inverse, border[0].column(j));
-                j += 1;
-            }
-            Column::write_block(s, &columns, &mut kept.solved);
+            [kept.solved, kept.row] = *border;
+            column::multiply(s, &inverse, &mut kept.solved);
+            let row = Column::<S, N>::all_of_block(s, &kept.row);
             let diagonal = factors.junctions.diagonal_mut(near - base);
-            diagonal.subtract_product(&kept.row, &kept.solved);
-            let own_part = x[k];
-            kept.row.subtract_times(&own_part, &mut x[near]);
-            let (zero, row) = (Column::splat(s, 0.0), Column::all_of_block(s, &kept.row));
-            let mut rows = inverse;
-            let mut j = 0;
-            while j < 6 {
-                columns[j] = column::minus_six(s, zero, &back, kept.solved.column(j));
-                rows[j] = column::minus_six(s, zero, &row, ahead_block.column(j));
-                j += 1;
-            }
-            Column::write_block(s, &columns, &mut border[0]);
-            Column::write_block(s, &rows, &mut border[1]);
+            column::subtract_product(s, diagonal, &row, &kept.solved);
+            let left = Column::read(&six(&x[near]));
+            put(column::minus_six(s, left, &row, &solved), &mut x[near]);
+            *border = [Block6::ZERO; 2];
+            column::subtract_product(s, &mut border[0], &back, &kept.solved);
+            column::subtract_product(s, &mut border[1], &row, ahead_block);
         }
         if last {
             return false;
@@ -355,12 +346,14 @@ impl Columnwise for Again<'_> {
             for step in 0..chain.len {
                 let k = order.frame(step);
                 let inverse = Column::<S, N>::all_of_block(s, &matrix.diagonal[k]);
+                let value = column::times_six(s, &inverse, &rhs);
                 let mut solved = [0.0; 8];
-                column::times_six(s, &inverse, &rhs).write(&mut solved);
-                x[k].as_mut_slice().copy_from_slice(&solved[..6]);
+                value.write(&mut solved);
+                put(value, &mut x[k]);
                 if let (Some(border), Some(near)) = (border.get(step), order.near) {
-                    let own_part = x[k];
-                    border.row.subtract_times(&own_part, &mut x[near]);
+                    let row = Column::<S, N>::all_of_block(s, &border.row);
+                    let left = Column::read(&six(&x[near]));
+                    put(column::minus_six(s, left, &row, &solved), &mut x[near]);
                 }
                 let next = if step + 1 < chain.len {
                     order.frame(step + 1)
@@ -371,9 +364,10 @@ impl Columnwise for Again<'_> {
                 };
                 let back = Column::<S, N>::all_of_block(s, order.link(step, index, matrix).1);
                 let left = Column::read(&six(&x[next]));
-                column::minus_six(s, left, &back, &solved).write(&mut rhs);
+                let value = column::minus_six(s, left, &back, &solved);
+                value.write(&mut rhs);
                 if step + 1 == chain.len {
-                    x[next].as_mut_slice().copy_from_slice(&rhs[..6]);
+                    put(value, &mut x[next]);
                 }
             }
         }
@@ -414,7 +408,7 @@ impl Columnwise for Backward<'_> {
                     value = column::minus_six(s, value, &solved, &six(&x[near]));
                 }
                 value.write(&mut next);
-                x[k].as_mut_slice().copy_from_slice(&next[..6]);
+                put(value, &mut x[k]);
             }
         }
     }
