@@ -17,12 +17,11 @@ const WORTH_REUSE: f64 = 0.05;
 const LOST: f64 = 1e3;
 /// Solutions that get new matrices only, after an old one did not do.
 const PAUSE: usize = 3;
-/// Iterations of a step that has no new matrix, at most, for the next one to try without as well.
+/// Share of the residual that the first iteration of a solution with a new matrix may leave, for that
+/// matrix to serve the next solution as well.
+const HARDLY_BENT: f64 = 1e-4;
+/// Iterations that such a solution may take, for its matrix to serve once more.
 const CHEAP: usize = 2;
-/// Solutions that begin with a new matrix after one that took more, at first and at most: each such
-/// pause is twice as long as the one before.
-const FIRST_REFRESH: usize = 1;
-const LONGEST_REFRESH: usize = 64;
 /// Difference of two steps' sizes with which a matrix serves both, over their size.
 const SAME: f64 = 1e-3;
 /// Most iterations in a row with an old matrix.
@@ -97,9 +96,8 @@ pub(crate) struct Newton {
     pause: usize,
     /// Factor on velocities of the matrix that is factorised, if there is one [1/s].
     factorised: Option<f64>,
-    /// Solutions to come that begin with a new matrix, and the next number of such.
-    refresh: usize,
-    next_refresh: usize,
+    /// Whether it may serve the next solution.
+    serves: bool,
 }
 
 impl Newton {
@@ -111,8 +109,7 @@ impl Newton {
             converged: false,
             pause: 0,
             factorised: None,
-            refresh: 0,
-            next_refresh: FIRST_REFRESH,
+            serves: false,
         }
     }
 
@@ -146,8 +143,7 @@ impl Newton {
         let same = self
             .factorised
             .is_some_and(|of| (of - rate).abs() <= SAME * rate);
-        let unaided = same && self.pause == 0 && self.refresh == 0;
-        self.refresh = self.refresh.saturating_sub(1);
+        let unaided = same && self.serves && self.pause == 0;
         if unaided {
             system.stepping(stage.travel());
         }
@@ -156,6 +152,8 @@ impl Newton {
         let mut may_reuse = self.pause == 0;
         self.pause = self.pause.saturating_sub(1);
         let (mut reuses, mut renewed) = (0, false);
+        // Share of the residual that the first iteration left.
+        let mut left = 1.0;
         loop {
             // Where convergence is likely, or the old matrix may do, the residual alone is
             // evaluated. Elsewhere residual and matrix come from one evaluation.
@@ -193,9 +191,12 @@ impl Newton {
                 residual,
                 singular: false,
             };
-            let lost = LOST * *first.get_or_insert(residual.newtons);
+            let first = *first.get_or_insert(residual.newtons);
+            if iterations == 1 {
+                left = residual.newtons / first;
+            }
             if !residual.newtons.is_finite()
-                || iterations > UNCHECKED_ITERATIONS && residual.newtons > lost
+                || iterations > UNCHECKED_ITERATIONS && residual.newtons > LOST * first
             {
                 self.pause = PAUSE;
                 return Err(failure);
@@ -203,12 +204,11 @@ impl Newton {
             previous = residual.newtons;
             if converged || residual.newtons <= settings.tolerance_newtons {
                 self.expected = iterations;
-                if unaided && !renewed && iterations <= CHEAP {
-                    self.next_refresh = FIRST_REFRESH;
-                } else if unaided {
-                    self.refresh = self.next_refresh;
-                    self.next_refresh = LONGEST_REFRESH.min(2 * self.next_refresh);
-                }
+                self.serves = if unaided {
+                    !renewed && iterations <= CHEAP
+                } else {
+                    left < HARDLY_BENT
+                };
                 self.converged = true;
                 return Ok(NewtonOutcome {
                     iterations,
