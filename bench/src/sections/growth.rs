@@ -22,14 +22,8 @@ pub(crate) const SECTION: Section = Section {
 const COUNTS: [usize; 7] = [100, 300, 1000, 3000, 10_000, 30_000, 100_000];
 /// Length of the line [m].
 const LENGTH: f64 = 3000.0;
-/// Steps of 0.1 s: fewer for a large system, which shows its time soon.
-fn steps(elements: usize) -> usize {
-    match elements {
-        0..=3000 => 200,
-        3001..=10_000 => 20,
-        _ => 10,
-    }
-}
+/// Steps of 0.1 s: as many for all, since the first ones take more iterations than the others.
+const STEPS: usize = 200;
 /// Up to this size, runs are repeated.
 const REPEATED: usize = 10_000;
 
@@ -42,7 +36,7 @@ struct Data {
 /// A line that hangs from a ship with a weight at its end; at t = 0 the ship begins to move and the
 /// current acts. Hanging straight down is the equilibrium, so the statics of the long ones is short.
 fn model(elements: usize) -> String {
-    let duration = 0.1 * steps(elements) as f64;
+    let duration = 0.1 * STEPS as f64;
     format!(
         r#"title = "A towed line of {elements} elements"
 [environment]
@@ -171,7 +165,7 @@ fn markdown(data: &Value) -> Result<String, String> {
     Ok(format!(
         "A line of {} m with a weight at its end, towed in a cross current, in steps of 0.1 s, on one\n\
          thread. Bytes per element: peak memory beyond that of the smallest run. Lines of more than\n\
-         {} elements are computed once and for 10 steps; time steps that were cut cost iterations.\n\n{}\n\
+         {} elements are computed once; time steps that were cut cost iterations.\n\n{}\n\
          ![Cost per element and step](figures/growth.svg)\n",
         grouped(data.length_m),
         grouped(REPEATED as f64),
@@ -219,7 +213,7 @@ mod tests {
             accuracy: None,
         };
         let probe = task.compute().expect("a run");
-        assert_eq!((probe.elements, probe.steps), (10, steps(10)));
+        assert_eq!((probe.elements, probe.steps), (10, STEPS));
         // 8 kg/m of cable and the weight, less the water that they displace [N].
         let water = 1025.0 * (3000.0 * std::f64::consts::FRAC_PI_4 * 0.05_f64.powi(2) + 0.13);
         let weight = 9.80665 * (3000.0 * 8.0 + 1000.0 - water);
