@@ -18,8 +18,9 @@ const LOST: f64 = 1e3;
 /// Solutions that get new matrices only, after an old one did not do.
 const PAUSE: usize = 3;
 /// Share of the residual that the first iteration of a solution with a new matrix may leave, for that
-/// matrix to serve the next solution as well.
+/// matrix to serve the next solution as well; or what it may leave over the tolerance.
 const HARDLY_BENT: f64 = 1e-4;
+const HARDLY_LEFT: f64 = 0.01;
 /// Iterations that such a solution may take, for its matrix to serve once more.
 const CHEAP: usize = 2;
 /// Difference of two steps' sizes with which a matrix serves both, over their size.
@@ -152,8 +153,8 @@ impl Newton {
         let mut may_reuse = self.pause == 0;
         self.pause = self.pause.saturating_sub(1);
         let (mut reuses, mut renewed) = (0, false);
-        // Share of the residual that the first iteration left.
-        let mut left = 1.0;
+        // Whether the first iteration left next to nothing.
+        let mut hardly_bent = false;
         loop {
             // Where convergence is likely, or the old matrix may do, the residual alone is
             // evaluated. Elsewhere residual and matrix come from one evaluation.
@@ -193,7 +194,9 @@ impl Newton {
             };
             let first = *first.get_or_insert(residual.newtons);
             if iterations == 1 {
-                left = residual.newtons / first;
+                let next_to_nothing =
+                    (HARDLY_BENT * first).max(HARDLY_LEFT * settings.tolerance_newtons);
+                hardly_bent = residual.newtons < next_to_nothing;
             }
             if !residual.newtons.is_finite()
                 || iterations > UNCHECKED_ITERATIONS && residual.newtons > LOST * first
@@ -207,7 +210,7 @@ impl Newton {
                 self.serves = if unaided {
                     !renewed && iterations <= CHEAP
                 } else {
-                    left < HARDLY_BENT
+                    hardly_bent
                 };
                 self.converged = true;
                 return Ok(NewtonOutcome {
