@@ -93,7 +93,9 @@ fn page(all: &Map<String, Value>) -> Result<String, String> {
          Written by `cargo xtask bench`; do not edit by hand. What is measured, how, and how fair it\n\
          is to the peers stands in [docs/benchmarks.md](../docs/benchmarks.md), the raw numbers in\n\
          [results.json](results.json). Times are processor times; the fastest of several repeats\n\
-         counts. Every section is one run, in which what is compared took turns.\n",
+         counts. Every section is one run, in which what is compared took turns. What was aimed at\n\
+         and is not reached, what was tried, and where the floor is:\n\
+         [docs/theory/speed.md](../docs/theory/speed.md#what-is-not-reached).\n",
     );
     for section in SECTIONS {
         let Some(entry) = entry_of(all, section)? else {
