@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use catenix_engine::{System, simulate, solve_statics};
+use catenix_engine::{StaticSolution, System, simulate, solve_statics};
 use catenix_model::file::read_study;
 use catenix_model::{Channel, LoadCase, Model, all_channels};
 use catenix_results::Extremes;
@@ -159,17 +159,21 @@ impl Task {
         for name in &self.channels {
             columns.push(Probe::parts(&model, name)?);
         }
-        let system = System::new(&model).map_err(|error| error.to_string())?;
+        let mut system = System::new(&model).map_err(|error| error.to_string())?;
         let mut probe = Probe {
             elements: model.lines.iter().map(|line| line.element_count()).sum(),
             assembling_cpu_s: clock.elapsed().as_secs_f64(),
             ..Probe::default()
         };
         let clock = ThreadTime::now();
-        let start = solve_statics(&system, &mut |_| ControlFlow::Continue(()))
-            .map_err(|error| error.to_string())?;
+        if system.wants_tension() {
+            let start = settle(&system)?;
+            probe.statics_iterations = start.iterations;
+            system = start.tightened().map_err(|error| error.to_string())?;
+        }
+        let start = settle(&system)?;
         probe.statics_cpu_s = clock.elapsed().as_secs_f64();
-        probe.statics_iterations = start.iterations;
+        probe.statics_iterations += start.iterations;
         if let (false, Some(settings)) = (self.statics_only, &model.dynamics) {
             // With the elements that an accuracy asks for a motion takes some milliseconds, which
             // whatever else the machine does can double.
@@ -199,6 +203,10 @@ impl Task {
         probe.peak_bytes = child::own_peak_bytes();
         Ok(probe)
     }
+}
+
+fn settle(system: &System) -> Result<StaticSolution<'_>, String> {
+    solve_statics(system, &mut |_| ControlFlow::Continue(())).map_err(|error| error.to_string())
 }
 
 /// How often a short motion is computed.

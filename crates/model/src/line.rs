@@ -117,14 +117,25 @@ pub struct Line {
     /// Points of a polyline along which the elements are first laid, end A first, global, at least
     /// two (n x 3) [m]; empty: an arc between the ends.
     pub start_shape: Vec<[f64; 3]>,
-    /// Effective tension that is expected, by increasing distance from end A: pairs of distance and
-    /// tension (n x 2) [m, N]; empty where nothing is known. Discrete elements that are longer than
-    /// a bending layer take its length from it (docs/theory/dem.md, eq. (40)). No key of the model
-    /// file gives it; a coarse solution does.
-    pub tensions: Vec<[f64; 2]>,
 }
 
 impl Line {
+    /// Moves nodes to the attachments, and those between them along: the number of elements stays.
+    ///
+    /// In each section an attachment takes the node that is nearest to it, unless that is the
+    /// section's end or another attachment has it; then it stays inside an element.
+    ///
+    /// Source: docs/theory/dem.md, eq. (46).
+    pub fn move_nodes_to_attachments(&mut self) {
+        let mut start = 0.0;
+        for section in &mut self.sections {
+            let end = start + section.element_lengths.iter().sum::<f64>();
+            let places = self.attachments.iter().map(|lump| lump.arc_length - start);
+            move_nodes(&mut section.element_lengths, places);
+            start = end;
+        }
+    }
+
     /// Unstretched length [m].
     pub fn length(&self) -> f64 {
         self.sections
@@ -133,25 +144,46 @@ impl Line {
             .sum()
     }
 
-    /// Effective tension expected at a distance from end A [N]; 0 where nothing is known.
-    pub fn expected_tension(&self, arc_length: f64) -> f64 {
-        let after = self.tensions.partition_point(|point| point[0] < arc_length);
-        match (
-            self.tensions.get(after.wrapping_sub(1)),
-            self.tensions.get(after),
-        ) {
-            (Some(a), Some(b)) => a[1] + (b[1] - a[1]) * (arc_length - a[0]) / (b[0] - a[0]),
-            (Some(one), None) | (None, Some(one)) => one[1],
-            (None, None) => 0.0,
-        }
-    }
-
     /// Number of elements over all sections.
     pub fn element_count(&self) -> usize {
         self.sections
             .iter()
             .map(|section| section.element_lengths.len())
             .sum()
+    }
+}
+
+/// Moves the nodes between elements of these lengths so that one lies at each of `places`, by
+/// increasing distance from the first element's start, as far as there are nodes for them.
+fn move_nodes(lengths: &mut [f64], places: impl Iterator<Item = f64>) {
+    let mut nodes = vec![0.0];
+    for length in &*lengths {
+        nodes.push(nodes[nodes.len() - 1] + length);
+    }
+    let last = lengths.len();
+    // Nodes that are where they shall be, with the place.
+    let mut fixed = vec![(0, 0.0)];
+    for place in places.filter(|place| (0.0..nodes[last]).contains(place)) {
+        let after = nodes.partition_point(|node| *node < place).max(1);
+        let nearest = if place - nodes[after - 1] < nodes[after] - place {
+            after - 1
+        } else {
+            after
+        };
+        if nearest > fixed[fixed.len() - 1].0 && nearest < last {
+            fixed.push((nearest, place));
+        }
+    }
+    fixed.push((last, nodes[last]));
+    for pair in fixed.windows(2) {
+        let [(first, from), (end, to)] = [pair[0], pair[1]];
+        let stretch = (to - from) / (nodes[end] - nodes[first]);
+        // A node that already lies there leaves all lengths as they are, to the last bit.
+        if (stretch - 1.0).abs() > 1e-12 {
+            lengths[first..end]
+                .iter_mut()
+                .for_each(|length| *length *= stretch);
+        }
     }
 }
 
@@ -217,4 +249,60 @@ pub enum Joint {
     },
     /// All rotations held.
     Fixed,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(sections: &[&[f64]], attachments: &[f64]) -> Line {
+        let section = |lengths: &&[f64]| Section {
+            line_type: 0,
+            element_lengths: lengths.to_vec(),
+            natural: NaturalShape::default(),
+        };
+        let attachment = |place: &f64| Attachment {
+            name: String::new(),
+            arc_length: *place,
+            mass: 1.0,
+            volume: 0.0,
+            drag_area: 0.0,
+            added_mass: 0.0,
+        };
+        Line {
+            name: String::new(),
+            sections: sections.iter().map(section).collect(),
+            attachments: attachments.iter().map(attachment).collect(),
+            ends: [LineEnd::Free, LineEnd::Free],
+            start_shape: Vec::new(),
+        }
+    }
+
+    fn moved(sections: &[&[f64]], attachments: &[f64]) -> Vec<Vec<f64>> {
+        let mut line = line(sections, attachments);
+        line.move_nodes_to_attachments();
+        let lengths = line.sections.into_iter().map(|s| s.element_lengths);
+        lengths.collect()
+    }
+
+    #[test]
+    fn nodes_move_to_attachments_and_take_their_neighbours_along() {
+        // 2.0 goes to 2.2, with two elements before it and two behind; the second section, from
+        // 4.0 on, gets 5.5 from its node at 5.0, of elements of 1 and 2.
+        let lengths = moved(&[&[1.0; 4], &[1.0, 2.0]], &[2.2, 5.5]);
+        let expected = [vec![1.1, 1.1, 0.9, 0.9], vec![1.5, 1.5]];
+        for (found, expected) in lengths.iter().flatten().zip(expected.iter().flatten()) {
+            assert!((found - expected).abs() < 1e-12, "{lengths:?}");
+        }
+    }
+
+    #[test]
+    fn an_attachment_without_a_node_of_its_own_stays_inside_an_element() {
+        // Near the ends, and beside one that has the node already.
+        let lengths = moved(&[&[1.0; 4]], &[0.3, 2.0, 2.2, 3.9]);
+        assert_eq!(lengths, [vec![1.0; 4]]);
+        // At a node, at the ends, and where there is no node between the ends.
+        assert_eq!(moved(&[&[0.1; 7]], &[0.0, 0.3, 0.7]), [vec![0.1; 7]]);
+        assert_eq!(moved(&[&[5.0]], &[2.5]), [vec![5.0]]);
+    }
 }

@@ -104,12 +104,15 @@ pub fn compute_statics(case: &LoadCase, accuracy: Option<f64>, watch: &dyn Watch
     let (case, halt) = account.choose(case, accuracy, Wanted::Statics, watch);
     let system = match halt {
         Some(halt) => Err(halt),
-        None => system_of(&case.model).map_err(Halt::Failed),
+        None => system_of(&case.model, &Equilibria::default(), watch),
     };
     let solution = match &system {
-        Ok(system) => settle(system, watch, &mut account),
+        Ok(system) => settle(system, watch),
         Err(halt) => Err(halt.clone()),
     };
+    if let Ok(start) = &solution {
+        account.found(start);
+    }
     let (status, error) = match &solution {
         Ok(_) => (Status::Complete, None),
         Err(Halt::Interrupted) => (Status::Interrupted, None),
@@ -131,18 +134,9 @@ fn run_case(
     watch: &dyn Watch,
     account: &mut Account,
 ) -> Result<(), Stop> {
-    let system = system_of(&case.model).map_err(Halt::Failed)?;
-    let start = match equilibria.of(&system) {
-        Some(start) => {
-            account.found(&start);
-            start
-        }
-        None => {
-            let start = settle(&system, watch, account)?;
-            equilibria.keep(&start);
-            start
-        }
-    };
+    let system = system_of(&case.model, equilibria, watch)?;
+    let start = equilibria.of_or_find(&system, || settle(&system, watch))?;
+    account.found(&start);
     recorder
         .record_static(case, &EngineSample(&start.view()))
         .map_err(Stop::Store)?;
@@ -182,29 +176,38 @@ fn run_case(
     }
 }
 
-pub(crate) fn system_of(model: &Model) -> Result<System, CaseError> {
-    System::new(model).map_err(|error| case_error(UNUSABLE, &error))
+/// The system of a model, which knows the tension of its equilibrium where it wants to.
+pub(crate) fn system_of(
+    model: &Model,
+    equilibria: &Equilibria,
+    watch: &dyn Watch,
+) -> Result<System, Halt> {
+    let unusable = |error| Halt::Failed(case_error(UNUSABLE, &error));
+    let system = System::new(model).map_err(unusable)?;
+    if !system.wants_tension() {
+        return Ok(system);
+    }
+    let start = equilibria.of_or_find(&system, || settle(&system, watch))?;
+    start.tightened().map_err(unusable)
 }
 
+/// The static equilibrium of a system.
 pub(crate) fn settle<'a>(
     system: &'a System,
     watch: &dyn Watch,
-    account: &mut Account,
 ) -> Result<StaticSolution<'a>, Halt> {
     if watch.stop() {
         return Err(Halt::Interrupted);
     }
     let mut last_shown = Instant::now();
-    let solution = solve_statics(system, &mut |state| {
+    solve_statics(system, &mut |state| {
         if last_shown.elapsed() >= PROGRESS_INTERVAL {
             watch.statics(state.iteration, state.residual_n);
             last_shown = Instant::now();
         }
         flow(watch.stop())
     })
-    .map_err(statics_halt)?;
-    account.found(&solution);
-    Ok(solution)
+    .map_err(statics_halt)
 }
 
 impl Account {
@@ -219,7 +222,7 @@ impl Account {
         }
     }
 
-    fn found(&mut self, solution: &StaticSolution<'_>) {
+    pub(crate) fn found(&mut self, solution: &StaticSolution<'_>) {
         self.statics = Some(StaticsFacts {
             iterations: solution.iterations,
             residual_n: solution.residual_n,

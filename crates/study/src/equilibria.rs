@@ -4,8 +4,11 @@ use std::sync::{Mutex, PoisonError};
 
 use catenix_engine::{Equilibrium, StaticSolution, System};
 
-/// Most equilibria that are kept: cases that have one in common usually follow one another.
-const MOST_KEPT: usize = 4;
+use crate::case::Halt;
+
+/// Most equilibria that are kept: cases that have one in common usually follow one another, and
+/// each case may need two, without and with the tension known.
+const MOST_KEPT: usize = 8;
 
 /// The equilibria of the latest cases, for those that pose the same static problem: they need not
 /// find it again.
@@ -18,16 +21,23 @@ pub struct Equilibria {
 }
 
 impl Equilibria {
-    pub(crate) fn of<'a>(&self, system: &'a System) -> Option<StaticSolution<'a>> {
-        let latest = self.latest.lock().unwrap_or_else(PoisonError::into_inner);
-        latest.iter().rev().find_map(|found| found.of(system))
-    }
-
-    pub(crate) fn keep(&self, solution: &StaticSolution<'_>) {
-        let mut latest = self.latest.lock().unwrap_or_else(PoisonError::into_inner);
+    /// The equilibrium of a system: one of those that are known, or what `find` finds.
+    pub(crate) fn of_or_find<'a>(
+        &self,
+        system: &'a System,
+        find: impl FnOnce() -> Result<StaticSolution<'a>, Halt>,
+    ) -> Result<StaticSolution<'a>, Halt> {
+        let latest = || self.latest.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = latest().iter().rev().find_map(|found| found.of(system));
+        if let Some(known) = known {
+            return Ok(known);
+        }
+        let found = find()?;
+        let mut latest = latest();
         if latest.len() == MOST_KEPT {
             latest.remove(0);
         }
-        latest.push(Equilibrium::new(solution));
+        latest.push(Equilibrium::new(&found));
+        Ok(found)
     }
 }

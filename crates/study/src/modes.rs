@@ -10,6 +10,7 @@ use catenix_results::{
 };
 
 use crate::case::{Account, EngineSample, Halt, case_error, flow, settle, system_of};
+use crate::equilibria::Equilibria;
 use crate::watch::Watch;
 
 /// Finds the natural modes of a case about its static equilibrium, and writes both into
@@ -25,11 +26,14 @@ pub fn compute_modes(
 ) -> Result<(CaseSummary, Option<CaseModes>), StoreError> {
     let mut account = Account::begin();
     let mut recorder = recorder;
-    let system = system_of(&case.model);
+    let system = system_of(&case.model, &Equilibria::default(), watch);
     let start = match &system {
-        Ok(system) => settle(system, watch, &mut account),
-        Err(error) => Err(Halt::Failed(error.clone())),
+        Ok(system) => settle(system, watch),
+        Err(halt) => Err(halt.clone()),
     };
+    if let Ok(start) = &start {
+        account.found(start);
+    }
     let modes = match (&system, &start) {
         (Ok(system), Ok(start)) => seek(system, start, settings, watch, &mut account).map(Some),
         _ => Ok(None),

@@ -17,6 +17,8 @@ pub struct Equilibrium {
     /// Vessels as they stand at t = 0.
     vessels: Vec<RigidMotion>,
     first_shape: Configuration,
+    /// Expected at the nodes of each line (n_lines x n_nodes) [N].
+    tensions: Vec<Vec<f64>>,
     state: MotionState,
     iterations: usize,
     residual_n: f64,
@@ -31,6 +33,7 @@ impl Equilibrium {
             model: system.model().clone(),
             vessels: standing(system),
             first_shape: system.first_shape().clone(),
+            tensions: tensions(system).cloned().collect(),
             state: solution.state.clone(),
             iterations: solution.iterations,
             residual_n: solution.residual_n,
@@ -44,7 +47,8 @@ impl Equilibrium {
     pub fn of<'a>(&self, system: &'a System) -> Option<StaticSolution<'a>> {
         let same = same_statics(&self.model, system.model())
             && self.vessels == standing(system)
-            && self.first_shape == *system.first_shape();
+            && self.first_shape == *system.first_shape()
+            && self.tensions.iter().eq(tensions(system));
         if !same {
             return None;
         }
@@ -62,6 +66,10 @@ impl Equilibrium {
             warnings: self.warnings.clone(),
         })
     }
+}
+
+fn tensions(system: &System) -> impl Iterator<Item = &Vec<f64>> {
+    system.lines.iter().map(|layout| &layout.tension)
 }
 
 fn standing(system: &System) -> Vec<RigidMotion> {

@@ -15,7 +15,7 @@ use catenix_numerics::{
 use thiserror::Error;
 
 use super::free_motion;
-use crate::system::{FrameOwner, StepView, System, SystemSolver};
+use crate::system::{FrameOwner, StepView, System, SystemError, SystemSolver};
 
 /// Newton iterations of one pseudo-step before it is cut.
 const STEP_ITERATIONS: usize = 12;
@@ -80,6 +80,20 @@ impl StaticSolution<'_> {
     /// Positions and rotations.
     pub fn configuration(&self) -> &Configuration {
         &self.state.configuration
+    }
+
+    /// The same system, which knows the tension of this equilibrium and starts from its shape, for
+    /// one that [wants to know it](System::wants_tension).
+    ///
+    /// Source: docs/theory/dem.md, "Bending layers shorter than an element".
+    ///
+    /// # Errors
+    /// [`SystemError`] when a value cannot be used.
+    pub fn tightened(&self) -> Result<System, SystemError> {
+        let system = self.solver.system();
+        let lines = 0..system.lines.len();
+        let tensions: Vec<Vec<f64>> = lines.map(|line| self.view().tensions(line)).collect();
+        system.tightened(&tensions, self.configuration())
     }
 }
 

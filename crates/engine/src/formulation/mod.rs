@@ -131,6 +131,12 @@ pub(crate) trait Formulation: Debug + Send + Sync {
         false
     }
 
+    /// Whether connectors depend on the tension that is expected at them
+    /// ([`LineLayout::tension`]).
+    fn has_layers(&self) -> bool {
+        false
+    }
+
     /// Direction of the line at one of its frames, unit, global (3).
     fn axis(&self, state: &MotionState, frame: usize) -> Vector3 {
         state.configuration.rotation[frame].column(0).into()

@@ -24,7 +24,9 @@ const EARTH_GRAVITY: f64 = 9.80665;
 /// Roundings, of the size of the coordinates, that add up in the gap of a connector.
 const ROUND_OFF: f64 = 4.0;
 
-pub(super) fn build(model: &Model) -> Result<System, SystemError> {
+/// `tensions`: expected at the nodes of each line (n_lines x n_nodes) [N]; empty where nothing is
+/// known.
+pub(super) fn build(model: &Model, tensions: &[Vec<f64>]) -> Result<System, SystemError> {
     if model.lines.is_empty() && model.bodies.is_empty() {
         return Err(SystemError::Empty);
     }
@@ -32,8 +34,9 @@ pub(super) fn build(model: &Model) -> Result<System, SystemError> {
     let vessels: Vec<PrescribedMotion> = model.vessels.iter().map(PrescribedMotion::new).collect();
     let mut layouts: Vec<LineLayout> = Vec::new();
     let mut line_frames = 0;
-    for line in &model.lines {
+    for (index, line) in model.lines.iter().enumerate() {
         let mut layout = lay_out(line, line_frames);
+        layout.tension = tensions.get(index).cloned().unwrap_or_default();
         layout.frame_count = (family.frame_count)(model, line, &layout);
         line_frames += layout.frame_count;
         layouts.push(layout);
@@ -165,6 +168,7 @@ fn lay_out(line: &Line, first_frame: usize) -> LineLayout {
         lengths,
         element_types,
         natural,
+        tension: Vec::new(),
     }
 }
 

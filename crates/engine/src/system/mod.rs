@@ -181,6 +181,9 @@ pub(crate) struct LineLayout {
     pub element_types: Vec<usize>,
     /// Stress-free shape of each element (n_elements).
     pub natural: Vec<NaturalShape>,
+    /// Effective tension that is expected at each node (n_elements + 1), by which discrete elements
+    /// know bending layers shorter than themselves [N]; empty where nothing is known.
+    pub tension: Vec<f64>,
 }
 
 impl LineLayout {
@@ -192,6 +195,11 @@ impl LineLayout {
     /// Unstretched length of an element [m].
     pub fn length(&self, element: usize) -> f64 {
         self.lengths[element]
+    }
+
+    /// Effective tension expected at a node [N]; 0 where nothing is known.
+    pub fn expected_tension(&self, node: usize) -> f64 {
+        self.tension.get(node).copied().unwrap_or(0.0)
     }
 }
 
@@ -268,7 +276,27 @@ impl System {
     /// # Errors
     /// [`SystemError`] when there is nothing to compute or a value cannot be used.
     pub fn new(model: &Model) -> Result<System, SystemError> {
-        build::build(model)
+        build::build(model, &[])
+    }
+
+    /// Whether places of this system bend in a way that depends on the tension there, which it does
+    /// not know yet: a static equilibrium tells it
+    /// ([`StaticSolution::tightened`](crate::StaticSolution::tightened)).
+    pub fn wants_tension(&self) -> bool {
+        let known = self.lines.iter().any(|line| !line.tension.is_empty());
+        !known && self.model.statics.equilibrium && self.formulation.has_layers()
+    }
+
+    /// The same system, which knows the tension at the nodes of each line (n_lines x n_nodes) [N],
+    /// with another first shape.
+    pub(crate) fn tightened(
+        &self,
+        tensions: &[Vec<f64>],
+        first_shape: &Configuration,
+    ) -> Result<System, SystemError> {
+        let mut system = build::build(&self.model, tensions)?;
+        system.first_shape = first_shape.clone();
+        Ok(system)
     }
 
     /// The model it was made of.

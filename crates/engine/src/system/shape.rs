@@ -361,7 +361,6 @@ mod tests {
             attachments: Vec::new(),
             ends: [LineEnd::Free, LineEnd::Free],
             start_shape: vec![[1.0, 0.0, 0.0], [1.0, 3.0, 0.0], [1.0, 3.0, -1.0]],
-            tensions: Vec::new(),
         };
         let layout = LineLayout {
             first_frame: 0,
@@ -371,6 +370,7 @@ mod tests {
             lengths: vec![2.0, 4.0, 1.0, 1.0],
             element_types: Vec::new(),
             natural: Vec::new(),
+            tension: Vec::new(),
         };
         // The sections give the line its length of 8 m, twice that of the polyline.
         let line = Line {

@@ -115,11 +115,17 @@ impl StepView<'_> {
 
     /// Smallest and largest effective tension along a line [N].
     pub fn tension_range(&self, line: usize) -> (f64, f64) {
-        let nodes = self.solver.system.lines[line].arc_length.len();
-        (0..nodes).map(|node| self.node(line, node).tension).fold(
+        let tensions = self.tensions(line).into_iter();
+        tensions.fold(
             (f64::INFINITY, f64::NEG_INFINITY),
             |(low, high), tension| (low.min(tension), high.max(tension)),
         )
+    }
+
+    /// Effective tension at the nodes of a line (n_elements + 1) [N].
+    pub(crate) fn tensions(&self, line: usize) -> Vec<f64> {
+        let nodes = 0..self.solver.system.lines[line].arc_length.len();
+        nodes.map(|node| self.node(line, node).tension).collect()
     }
 
     /// A quantity between the nodes of a line.

@@ -197,7 +197,6 @@ fn model() -> Model {
             attachments: Vec::new(),
             ends: [LineEnd::Free, LineEnd::Free],
             start_shape: Vec::new(),
-            tensions: Vec::new(),
         }],
         bodies: vec![body],
         vessels: vec![Vessel {

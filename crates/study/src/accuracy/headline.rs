@@ -6,8 +6,6 @@ use catenix_model::{
 };
 use catenix_results::{Extremes, RangeGraph, WindowStatistics};
 
-use super::mesh::nodes;
-
 /// Snapshots of the lines that a run keeps to see where they bend.
 const SNAPSHOTS: f64 = 40.0;
 /// Smallest horizontal offset that errors of positions are relative to, over the longest line.
@@ -47,8 +45,6 @@ pub(crate) struct Collector<'m> {
     next_snapshot_s: f64,
     /// Per line: curvature at the nodes, one row per snapshot [1/m].
     curvatures: Vec<Vec<Vec<f64>>>,
-    /// Per line: sum of the effective tension at the nodes over the snapshots [N].
-    tensions: Vec<Vec<f64>>,
 }
 
 impl<'m> Collector<'m> {
@@ -77,11 +73,6 @@ impl<'m> Collector<'m> {
             snapshot_interval_s: duration / SNAPSHOTS,
             next_snapshot_s: 0.0,
             curvatures: vec![Vec::new(); model.lines.len()],
-            tensions: model
-                .lines
-                .iter()
-                .map(|line| vec![0.0; line.element_count() + 1])
-                .collect(),
             channels,
         }
     }
@@ -106,10 +97,6 @@ impl<'m> Collector<'m> {
                 let nodes = values.len() / LineQuantity::ALL.len();
                 let first = LineQuantity::Curvature.index() * nodes;
                 self.curvatures[index].push(values[first..first + nodes].to_vec());
-                let first = LineQuantity::EffectiveTension.index() * nodes;
-                for (sum, tension) in self.tensions[index].iter_mut().zip(&values[first..]) {
-                    *sum += tension;
-                }
             }
         }
     }
@@ -117,20 +104,6 @@ impl<'m> Collector<'m> {
     /// Curvature at the nodes of each line, one row per snapshot [1/m].
     pub(crate) fn curvatures(&self) -> &[Vec<Vec<f64>>] {
         &self.curvatures
-    }
-
-    /// Mean effective tension at the nodes of each line, with their distance from end A
-    /// (n_lines x n_nodes x 2) [m, N].
-    pub(crate) fn mean_tensions(&self) -> Vec<Vec<[f64; 2]>> {
-        let lines = self.model.lines.iter().zip(&self.tensions);
-        lines
-            .zip(&self.curvatures)
-            .map(|((line, sums), snapshots)| {
-                let count = snapshots.len().max(1) as f64;
-                let nodes = nodes(line).into_iter().zip(sums);
-                nodes.map(|(s, sum)| [s, sum / count]).collect()
-            })
-            .collect()
     }
 
     /// The headline results of the states so far.

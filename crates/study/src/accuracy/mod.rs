@@ -12,11 +12,12 @@ mod headline;
 mod mesh;
 mod plan;
 
-use catenix_engine::{System, simulate, solve_statics};
+use catenix_engine::simulate;
 use catenix_model::{ChannelTarget, Line, LineQuantity, LoadCase, Model, Reference, StepControl};
 use catenix_results::{CaseError, Discretisation, ErrorEstimate};
 
-use crate::case::{Halt, dynamics_halt, flow, statics_halt, system_of};
+use crate::case::{Halt, dynamics_halt, flow, settle, system_of};
+use crate::equilibria::Equilibria;
 use crate::watch::Watch;
 use family::Family;
 use headline::SMALLEST_TENSION;
@@ -65,7 +66,7 @@ pub(crate) fn refined(
     };
     let planned = model.dynamics.is_some() && !wants_bending(&model, &references);
     let chosen = if planned {
-        Planner::scouting(model, references, watch)?.choose(target)?
+        Planner::new(model, references, watch).choose(target)?
     } else {
         Family::adapted_to(model, references, watch)?.choose(target)?
     };
@@ -123,15 +124,14 @@ fn compute<'m>(
     references: &'m [Reference],
     watch: &dyn Watch,
 ) -> Result<Collector<'m>, Halt> {
-    let system = system_of(model).map_err(Halt::Failed)?;
-    let system: &System = &system;
-    let start = solve_statics(system, &mut |_| flow(watch.stop())).map_err(statics_halt)?;
+    let system = system_of(model, &Equilibria::default(), watch)?;
+    let start = settle(&system, watch)?;
     let mut collector = Collector::new(model, references);
     if model.dynamics.is_none() {
         collector.add(&start.view());
         return Ok(collector);
     }
-    let report = simulate(system, &start, &mut |view| {
+    let report = simulate(&system, &start, &mut |view| {
         collector.add(view);
         flow(watch.stop())
     })

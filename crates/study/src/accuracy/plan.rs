@@ -14,8 +14,6 @@ use super::{Chosen, Headline, compute, no_estimate};
 use crate::case::Halt;
 use crate::watch::Watch;
 
-/// Elements of a line in the run that looks how taut it is.
-const SCOUTING_ELEMENTS: f64 = 12.0;
 /// Elements of a line in the runs that errors are planned from.
 const FIRST_ELEMENTS: f64 = 8.0;
 /// Elements of each span between lumps, at least, in those runs.
@@ -84,12 +82,11 @@ struct Shares {
 }
 
 impl<'w> Planner<'w> {
-    /// Looks how taut the lines are.
-    pub(super) fn scouting(
+    pub(super) fn new(
         mut model: Model,
         references: Vec<Reference>,
         watch: &'w dyn Watch,
-    ) -> Result<Planner<'w>, Halt> {
+    ) -> Planner<'w> {
         if let Some(dynamics) = &model.dynamics {
             // No output binds the steps of a trial.
             model.output.interpolate = true;
@@ -103,42 +100,28 @@ impl<'w> Planner<'w> {
             vec![lines.collect()]
         };
         let largest_step = (shortest_period(&model) / STEPS_PER_PERIOD).min(LARGEST_STEP);
-        let mut planner = Planner {
+        Planner {
             model,
             references,
             groups,
             largest_step,
             trials: 0,
             watch,
-        };
-        let first = planner.first(SCOUTING_ELEMENTS);
-        // Twice: the second time with the bending layers that the first one's tension gives.
-        for _ in 0..2 {
-            planner.look(&first)?;
         }
-        Ok(planner)
     }
 
     /// Elements for a first run, and the largest step.
-    fn first(&self, elements: f64) -> Set {
+    fn first(&self) -> Set {
         let of_line = |line: &Line| {
             let spans = line.sections.len() + line.attachments.len();
-            elements.max(FIRST_IN_SPAN * spans as f64).min(MOST_FIRST)
+            FIRST_ELEMENTS
+                .max(FIRST_IN_SPAN * spans as f64)
+                .min(MOST_FIRST)
         };
         Set {
             elements: self.model.lines.iter().map(of_line).collect(),
             step: 1.0,
         }
-    }
-
-    fn look(&mut self, set: &Set) -> Result<(), Halt> {
-        let model = self.model_of(set, &[], 1.0);
-        let collector = compute(&model, &self.references, self.watch)?;
-        let tensions = collector.mean_tensions();
-        for (line, tensions) in self.model.lines.iter_mut().zip(tensions) {
-            line.tensions = tensions;
-        }
-        Ok(())
     }
 
     /// The model of a set, with the elements of some groups halved, and the step shortened.
@@ -181,7 +164,7 @@ impl<'w> Planner<'w> {
 
     /// The cheapest set that meets the target, with its estimates; the best found where none does.
     pub(super) fn choose(mut self, target: f64) -> Result<Chosen, Halt> {
-        let mut first = self.first(FIRST_ELEMENTS);
+        let mut first = self.first();
         let mut base = self.run(&first, &[], 1.0);
         // Where few elements have no solution, more may.
         for _ in 0..3 {

@@ -7,7 +7,7 @@
 
 mod mesh;
 
-use catenix_engine::{simulate, solve_statics};
+use catenix_engine::simulate;
 use catenix_model::{FormulationKind, Line, LoadCase, Model, StepControl};
 use catenix_results::{
     ComparedCase, ComparedFormulation, ComparedResult, ComparedRun, ReferenceRun,
@@ -15,7 +15,8 @@ use catenix_results::{
 use cpu_time::ThreadTime;
 
 use crate::accuracy::{Collector, Headline};
-use crate::case::{Halt, UNUSABLE, dynamics_halt, flow, statics_halt, system_of};
+use crate::case::{Halt, UNUSABLE, dynamics_halt, flow, settle, system_of};
+use crate::equilibria::Equilibria;
 use crate::watch::Watch;
 use mesh::scaled;
 
@@ -210,9 +211,8 @@ impl Comparison<'_> {
     fn run(&self, model: &Model, mesh: f64) -> Result<Measured, Halt> {
         self.memory.begin();
         let clock = ThreadTime::now();
-        let system = system_of(model).map_err(Halt::Failed)?;
-        let stop = || flow(self.watch.stop());
-        let start = solve_statics(&system, &mut |_| stop()).map_err(statics_halt)?;
+        let system = system_of(model, &Equilibria::default(), self.watch)?;
+        let start = settle(&system, self.watch)?;
         let statics_cpu_seconds = clock.elapsed().as_secs_f64();
         let mut collector = Collector::new(model, &self.case.references);
         let mut run = ComparedRun {
@@ -241,7 +241,7 @@ impl Comparison<'_> {
         } else {
             let report = simulate(&system, &start, &mut |view| {
                 read(view);
-                stop()
+                flow(self.watch.stop())
             })
             .map_err(dynamics_halt)?;
             if report.interrupted {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 use catenix_engine::{
-    ModeKind, System, SystemError, find_modes, follow_path, simulate, solve_statics,
+    ModeKind, StaticSolution, System, SystemError, find_modes, follow_path, simulate, solve_statics,
 };
 use catenix_model::{FormulationKind, Line, LoadCase, Model, StepControl, Study, all_channels};
 
@@ -207,7 +207,13 @@ fn compute(model: &Model, analysis: Analysis, stop: &dyn Fn() -> bool) -> Result
         .map_err(|error| text(&error))?;
         return Ok(table);
     }
-    let start = solve_statics(&system, &mut |_| flow(stop())).map_err(|error| text(&error))?;
+    let system = if system.wants_tension() {
+        let start = settle(&system, stop)?;
+        start.tightened().map_err(|error| text(&error))?
+    } else {
+        system
+    };
+    let start = settle(&system, stop)?;
     match analysis {
         Analysis::Statics => {
             let view = start.view();
@@ -257,6 +263,10 @@ fn compute(model: &Model, analysis: Analysis, stop: &dyn Fn() -> bool) -> Result
         }
     }
     Ok(table)
+}
+
+fn settle<'a>(system: &'a System, stop: &dyn Fn() -> bool) -> Result<StaticSolution<'a>, String> {
+    solve_statics(system, &mut |_| flow(stop())).map_err(|error| error.to_string())
 }
 
 /// Rows at the output times out of the rows of all steps, which have the time in column `time`.

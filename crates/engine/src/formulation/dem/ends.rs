@@ -69,8 +69,7 @@ pub(super) fn end_connector(
             let untwisted = so3::shortest_arc(&tangent, &(support.rotation * direction)) * own;
             support.rotation.transpose() * untwisted
         };
-        let tension = own_line.expected_tension(layout.arc_length[node]);
-        let stiffness = stiffness.with_layer_at_clamp(half, tension);
+        let stiffness = stiffness.with_layer_at_clamp(half, layout.expected_tension(node));
         let shift = Vector3::x() * stiffness.shift;
         let clamp = on_support(axes).shifted(&shift);
         let element = element.shifted(&shift);

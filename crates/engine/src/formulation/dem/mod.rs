@@ -17,7 +17,7 @@ mod slide;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use catenix_model::{FormulationKind, Line, LineEnd, LineType, Model};
+use catenix_model::{FormulationKind, Joint, Line, LineEnd, LineType, Model};
 use catenix_numerics::{Configuration, Matrix3, Vector3};
 
 use super::{Evaluation, Family, Formulation, Lines, Plan, Situation, Spot};
@@ -107,6 +107,8 @@ struct Dem {
     linked: Vec<Option<Arc<LinkLaws>>>,
     /// What results need to know of these links.
     node_laws: Vec<Arc<NodeLaws>>,
+    /// Whether some connectors depend on the tension that is expected at them.
+    has_layers: bool,
 }
 
 /// The connectors of a line.
@@ -184,6 +186,20 @@ fn has_lump(line: &Line, layout: &LineLayout, node: usize) -> bool {
     lumps.any(|attachment| (attachment.arc_length - at).abs() < slack)
 }
 
+/// Whether a line that may bend is clamped somewhere, or pulled aside by a lump between elements.
+fn has_layers(plan: &Plan<'_>, index: usize) -> bool {
+    let (line, layout) = (&plan.model.lines[index], &plan.layouts[index]);
+    let types = line.sections.iter().map(|section| section.line_type);
+    let bends = types.map(|index| plan.model.line_types[index].bending_stiffness);
+    let clamped = |end: &LineEnd| match end {
+        LineEnd::Connected(connection) => connection.joint == Joint::Fixed,
+        LineEnd::Free => false,
+    };
+    bends.flatten().any(|stiffness| stiffness > 0.0)
+        && (line.ends.iter().any(clamped)
+            || (1..layout.element_count).any(|node| has_lump(line, layout, node)))
+}
+
 /// Its entry in the registry: one frame per element.
 pub(super) const FAMILY: Family = Family {
     kind: FormulationKind::Dem,
@@ -210,6 +226,7 @@ fn build(plan: &Plan<'_>) -> Result<Lines, SystemError> {
         elements: FrameBatch::all(&frames, 0..frames.len()),
         linked: Vec::new(),
         node_laws: Vec::new(),
+        has_layers: (0..model.lines.len()).any(|index| has_layers(plan, index)),
     };
     for index in 0..model.lines.len() {
         dem.connect(plan, index, &shape)?;
@@ -305,7 +322,7 @@ impl Dem {
                     let mut stiffness = node_stiffness(model, layout, node);
                     if has_lump(line, layout, node) {
                         let sides = [node - 1, node].map(|element| half(model, layout, element));
-                        let tension = line.expected_tension(layout.arc_length[node]);
+                        let tension = layout.expected_tension(node);
                         stiffness = stiffness.with_layers_at_lump(sides, tension);
                     }
                     let shift = Vector3::x() * stiffness.shift;
@@ -450,6 +467,10 @@ impl Formulation for Dem {
         let others = self.others.iter().map(|other| other.law.stiffness());
         let each = links.chain(others).map(ConnectorStiffness::stiffest);
         each.fold(0.0, f64::max)
+    }
+
+    fn has_layers(&self) -> bool {
+        self.has_layers
     }
 
     fn stiffest_over(&self, frames: &[Arc<Frame>], softness: &dyn Fn(&Frame) -> f64) -> f64 {

@@ -185,7 +185,6 @@ mod tests {
                             attachments: Vec::new(),
                             ends: [a.clone(), b.clone()],
                             start_shape: Vec::new(),
-                            tensions: Vec::new(),
                         };
                         let own = Arrangement::new(&line, elements, bends).unwrap();
                         check(&own, &line, elements, bends);

@@ -87,14 +87,14 @@ pub(super) fn resolve(
     if sections.len() != table.sections.len() || sections.is_empty() {
         return None;
     }
-    let line = Line {
+    let mut line = Line {
         name: name.to_owned(),
         sections,
         attachments,
         ends: [end_a?, end_b?],
         start_shape: start_shape?,
-        tensions: Vec::new(),
     };
+    line.move_nodes_to_attachments();
     let point_span = |end: &Option<EndTable>| match end {
         Some(EndTable::Connected(connection)) => connection.at.span.clone(),
         _ => table.key_span.clone(),
