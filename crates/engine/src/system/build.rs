@@ -190,7 +190,7 @@ fn body_frame(model: &Model, body: &Body) -> Frame {
         drag: DragCoefficients {
             normal: 0.5 * water * body.normal_drag_area,
             axial: 0.5 * water * body.axial_drag_area,
-            radius_squared,
+            radius: radius_squared.sqrt(),
         },
         added_normal: in_water(model, body.normal_added_mass),
         added_axial: in_water(model, body.axial_added_mass),

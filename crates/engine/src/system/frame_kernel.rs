@@ -18,7 +18,7 @@ use super::frames::{FrameMotion, LoadPowers, Sea, frame_motion, touch};
 use super::surroundings::Surroundings;
 use crate::body::inertia::{BodyMotion, Tensors, inertia_force, inertia_tangent};
 use crate::formulation::Situation;
-use crate::hydro::morison::DragKernel;
+use crate::hydro::morison::{StripDrag, Wrench};
 
 pub(super) const NO_ROW: Row = [0.0; MOST_LANES];
 
@@ -94,11 +94,7 @@ impl FrameRows {
                 frame.added_inertia,
             ];
             fill(&mut rows.plain, lane, &plain);
-            let drag = [
-                frame.drag.normal,
-                frame.drag.axial,
-                frame.drag.radius_squared,
-            ];
+            let drag = [frame.drag.normal, frame.drag.axial, frame.drag.radius];
             fill(&mut rows.drag, lane, &drag);
             fill(&mut rows.vectors, lane, frame.inertia.as_slice());
             fill(&mut rows.vectors[3..], lane, frame.axis.as_slice());
@@ -195,7 +191,7 @@ impl Kernel for Energies<'_> {
                 - loads.added.inertia.times(motion.spin) * share;
             let kinetic: T = mass * velocity.norm_squared() + motion.spin.dot(turning);
             kinetic.write(&mut each[0]);
-            let [force, moment] = loads.drag_load;
+            let Wrench { force, moment } = loads.drag_load;
             (share * (force.dot(velocity) + moment.dot(motion.spin))).write(&mut each[1]);
             let carried = velocity.dot(loads.added.mass.times(motion.acceleration))
                 + motion
@@ -324,9 +320,9 @@ pub(crate) struct FrameLoads<T> {
     axis: Vec3<T>,
     /// Share under water.
     share: T,
-    drag: DragKernel<T>,
+    drag: StripDrag<T>,
     /// Force and moment of the drag, fully under water.
-    drag_load: [Vec3<T>; 2],
+    drag_load: Wrench<Vec3<T>>,
     tensors: Tensors<T>,
     /// What is added to the tensors fully under water.
     added: Tensors<T>,
@@ -366,7 +362,7 @@ impl<T: Lane> FrameLoads<T> {
             T::read(token, &rows.drag[1]),
             T::read(token, &rows.drag[2]),
         ];
-        let drag = DragKernel::new(coefficients, axis, relative, spin);
+        let drag = StripDrag::new(coefficients, axis, relative, spin);
         let added_normal = T::read(token, &rows.plain[3]);
         let beyond = T::read(token, &rows.plain[4]) - added_normal;
         let added_inertia = T::read(token, &rows.plain[5]);
@@ -408,9 +404,9 @@ impl<T: Lane> FrameLoads<T> {
     pub(crate) fn total(&self) -> [T; 6] {
         let [force, moment] = inertia_force(&self.tensors, &self.motion);
         let buoyancy = self.buoyancy * self.share;
-        let mut force = force.minus(self.share, self.drag_load[0]);
+        let mut force = force.minus(self.share, self.drag_load.force);
         force.z += self.weight - buoyancy;
-        let mut moment = moment.minus(self.share, self.drag_load[1]);
+        let mut moment = moment.minus(self.share, self.drag_load.moment);
         // Arm x buoyancy.
         moment.x -= self.arm.y * buoyancy;
         moment.y += self.arm.x * buoyancy;
@@ -422,22 +418,20 @@ impl<T: Lane> FrameLoads<T> {
     pub(crate) fn tangent(&self, weights: &TangentWeights<'_>, turn: Mat3<T>) -> [[Mat3<T>; 2]; 2] {
         let velocity = self.share.same(weights.velocity);
         let acceleration = self.share.same(weights.acceleration);
-        let drag = self.drag.derivatives();
+        let drag = self.drag.derivatives(&self.drag_load);
         let inertia = inertia_tangent(&self.tensors, &self.motion);
         let by_velocity = self.share * velocity;
         let mut force_translation =
-            (self.tensors.mass * acceleration).plus(by_velocity, drag.force[0]);
-        let mut moment_translation = drag.moment[0] * by_velocity;
+            (self.tensors.mass * acceleration).plus(by_velocity, drag.velocity.force);
+        let mut moment_translation = drag.velocity.moment * by_velocity;
         // The current changes with height.
         let slope = self.current_slope * self.share;
-        force_translation.0[2] -= drag.force[0].times(slope);
-        moment_translation.0[2] -= drag.moment[0].times(slope);
-        // Drag by a turn of the axis, and through the spin.
-        let turned = self.axis * self.share;
-        let force_spin = drag.force[2] * -by_velocity;
+        force_translation.0[2] -= drag.velocity.force.times(slope);
+        moment_translation.0[2] -= drag.velocity.moment.times(slope);
+        let force_spin = drag.spin.force * -by_velocity;
         let moment_spin = (self.tensors.inertia * acceleration)
             .plus(velocity, inertia.moment_spin)
-            .plus(-by_velocity, drag.moment[2]);
+            .plus(-by_velocity, drag.spin.moment);
         // (buoyancy)^ (arm)^
         let up = self.buoyancy * self.share;
         let mut hung = Mat3::diagonal(self.arm.z * up);
@@ -447,14 +441,13 @@ impl<T: Lane> FrameLoads<T> {
         let mut tangent = [
             [
                 force_translation,
-                drag.force[1].crossing(turned) + inertia.force_rotation + force_spin.product(turn),
+                (inertia.force_rotation + force_spin.product(turn))
+                    .plus(-self.share, drag.rotation.force),
             ],
             [
                 moment_translation,
-                drag.moment[1].crossing(turned)
-                    + inertia.moment_rotation
-                    + hung
-                    + moment_spin.product(turn),
+                (inertia.moment_rotation + hung + moment_spin.product(turn))
+                    .plus(-self.share, drag.rotation.moment),
             ],
         ];
         if self.at_surface {
@@ -467,9 +460,9 @@ impl<T: Lane> FrameLoads<T> {
     #[inline(always)]
     fn add_waterline(&self, tangent: &mut [[Mat3<T>; 2]; 2]) {
         let [mut force, moment] = inertia_force(&self.added, &self.motion);
-        force -= self.drag_load[0];
+        force -= self.drag_load.force;
         force.z -= self.buoyancy;
-        let mut moment = moment - self.drag_load[1];
+        let mut moment = moment - self.drag_load.moment;
         moment.x -= self.arm.y * self.buoyancy;
         moment.y += self.arm.x * self.buoyancy;
         let zero = self.share.same(0.0);

@@ -267,7 +267,7 @@ fn element_frame(model: &Model, line_type: &LineType, length: f64) -> Frame {
         drag: DragCoefficients {
             normal: line_type.normal_drag * half_flow,
             axial: line_type.axial_drag * half_flow * std::f64::consts::PI,
-            radius_squared,
+            radius: radius_squared.sqrt(),
         },
         added_normal,
         added_axial: line_type.axial_added_mass * displaced,

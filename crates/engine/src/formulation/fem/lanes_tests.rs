@@ -88,7 +88,7 @@ fn cases(bend: f64) -> Vec<Case> {
                 drag: DragCoefficients {
                     normal: 180.0,
                     axial: 20.0,
-                    radius_squared: 0.0,
+                    radius: 0.0,
                 },
                 added_normal: 70.0,
                 added_axial: 8.0,

@@ -7,7 +7,7 @@ use catenix_numerics::{Matrix3, Vector3};
 
 use super::element::field::{LoadTangent, SpreadLoad, Station};
 use crate::contact::seabed::{self, Contact};
-use crate::hydro::morison::{self, DragCoefficients, DragMotion};
+use crate::hydro::morison::{self, DragCoefficients, PointDrag};
 use crate::hydro::submergence::Submergence;
 use crate::system::frames::{LoadPowers, Sea};
 
@@ -41,7 +41,7 @@ impl Spread {
             drag: DragCoefficients {
                 normal: line_type.normal_drag * flow,
                 axial: line_type.axial_drag * flow * std::f64::consts::PI,
-                radius_squared: 0.0,
+                radius: 0.0,
             },
             added_normal: line_type.normal_added_mass * displaced,
             added_axial: line_type.axial_added_mass * displaced,
@@ -75,7 +75,7 @@ pub(super) struct SeaLoad<'a> {
 /// What of the load is common to its value and its derivatives.
 struct Parts {
     wet: Submergence,
-    motion: DragMotion,
+    water: PointDrag<f64>,
     current_slope: Vector3,
     drag: Vector3,
     added: Matrix3,
@@ -87,16 +87,14 @@ impl SeaLoad<'_> {
     fn parts(&self, s: &Station) -> Parts {
         let spread = self.spread;
         let (water, current_slope) = self.sea.current.at(s.position.z, self.sea.current_factor);
-        let motion = DragMotion {
-            axis: s.axis,
-            relative_velocity: water - s.velocity,
-            spin: Vector3::zeros(),
-        };
+        let coefficients = [spread.drag.normal, spread.drag.axial];
+        let relative = (&(water - s.velocity)).into();
+        let water = PointDrag::new(coefficients, (&s.axis).into(), relative);
         let height = s.position.z + self.sea.depth;
         Parts {
             wet: spread.submergence(s),
-            drag: morison::drag(&spread.drag, &motion).force,
-            motion,
+            drag: water.force().into(),
+            water,
             current_slope,
             added: morison::added_mass(&s.axis, spread.added_normal, spread.added_axial),
             contact: self
@@ -152,11 +150,11 @@ impl SpreadLoad for SeaLoad<'_> {
         let spread = self.spread;
         let parts = self.parts(s);
         let share = parts.wet.share;
-        let t = morison::drag_tangent(&spread.drag, &parts.motion);
+        let [drag_by_velocity, drag_by_axis] = parts.water.derivatives().map(Matrix3::from);
         let difference = spread.added_axial - spread.added_normal;
         let along = s.axis.dot(&s.acceleration);
-        let mut by_height = t.force_velocity * parts.current_slope * share;
-        let mut by_axis = t.force_axis * share;
+        let mut by_height = drag_by_velocity * parts.current_slope * share;
+        let mut by_axis = drag_by_axis * share;
         if difference != 0.0 {
             by_axis -= (Matrix3::identity() * along + s.axis * s.acceleration.transpose())
                 * (difference * share);
@@ -166,7 +164,7 @@ impl SpreadLoad for SeaLoad<'_> {
             by_height += whole * parts.wet.by_height;
             by_axis += whole * Vector3::z().transpose() * parts.wet.by_slope;
         }
-        let mut by_velocity = t.force_velocity * -share;
+        let mut by_velocity = drag_by_velocity * -share;
         if let Some(contact) = &parts.contact {
             by_height += contact.by_height;
             by_velocity += contact.by_velocity;
