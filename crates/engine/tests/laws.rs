@@ -199,11 +199,19 @@ fn end_forces_balance_weight_buoyancy_and_drag() {
         let along: f64 = (0..3).map(|i| water[i] * axis[i]).sum();
         let across = [0, 1, 2].map(|i| water[i] - along * axis[i]);
         let speed = across.iter().map(|u| u * u).sum::<f64>().sqrt();
-        let area = 0.5 * WATER * 0.3 * 0.5;
+        // The clump has the 181st node: elements are 90.25 m / 181 before it, and 89.75 m / 179.
+        let own = if k <= 180 {
+            90.25 / 181.0
+        } else {
+            89.75 / 179.0
+        };
+        let area = 0.5 * WATER * 0.3 * own;
         for i in 0..3 {
             load[i] += area * (1.1 * speed * across[i] + 0.03 * PI * along.abs() * along * axis[i]);
         }
         if k == 180 {
+            // At the node between this element and the next.
+            let water = current(b[2]);
             let speed = water.iter().map(|u| u * u).sum::<f64>().sqrt();
             for i in 0..3 {
                 load[i] += 0.5 * WATER * 0.8 * speed * water[i];

@@ -125,7 +125,7 @@ impl Line {
     /// In each section an attachment takes the node that is nearest to it, unless that is the
     /// section's end or another attachment has it; then it stays inside an element.
     ///
-    /// Source: docs/theory/dem.md, eq. (46).
+    /// Source: docs/theory/dem.md, eq. (31).
     pub fn move_nodes_to_attachments(&mut self) {
         let mut start = 0.0;
         for section in &mut self.sections {

@@ -1,6 +1,6 @@
 //! Morison drag on a slender body, normal and axial, and its exact derivatives.
 //!
-//! Source: docs/theory/hydrodynamics.md, eqs. (2) to (6).
+//! Source: docs/theory/hydrodynamics.md, eqs. (2) to (6a).
 
 use catenix_numerics::lanes::{Lane, Mat3, Vec3};
 use catenix_numerics::{Matrix3, Vector3};
@@ -100,7 +100,7 @@ impl<T: Lane> StripDrag<T> {
 
     /// Exact derivatives of [`Self::load`], which is handed in again.
     ///
-    /// Source: docs/theory/hydrodynamics.md, eqs. (5) and (6).
+    /// Source: docs/theory/hydrodynamics.md, eqs. (5) to (6a).
     #[inline(always)]
     pub fn derivatives(&self, load: &Wrench<Vec3<T>>) -> DragDerivatives<T> {
         let [normal, axial, radius] = self.coefficients;
@@ -131,6 +131,8 @@ impl<T: Lane> StripDrag<T> {
 
     /// Derivative of a vector of the load by a rotation: it turns along, but for the velocities,
     /// which turn back as seen from the body.
+    ///
+    /// Source: docs/theory/hydrodynamics.md, eq. (6a).
     #[inline(always)]
     fn turned(&self, by_velocity: Mat3<T>, by_spin: Mat3<T>, load: Vec3<T>) -> Mat3<T> {
         (by_velocity.crossing(self.relative_velocity) + by_spin.crossing(self.spin)).plus_hat(-load)
@@ -178,7 +180,7 @@ impl<T: Lane> PointDrag<T> {
 
     /// Force on the structure.
     ///
-    /// Source: docs/theory/hydrodynamics.md, eqs. (2) and (3).
+    /// Source: docs/theory/hydrodynamics.md, eqs. (2) and (4).
     #[inline(always)]
     pub fn force(&self) -> Vec3<T> {
         let [normal, axial] = self.coefficients;
@@ -302,7 +304,7 @@ mod tests {
             prop_assert!(force.dot(&v) + moment.dot(&w) <= 0.0);
         }
 
-        /// Against equation (4a), for bodies of which no part moves against the rest of the water.
+        /// Against equation (3), for bodies of which no part moves against the rest of the water.
         #[test]
         fn the_integral_over_the_length_is_exact_in_the_plane_of_the_flow(
             a in vector(), turn in -1.0..1.0f64, flow in 0.1..1.0f64

@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use catenix_engine::{
-    DynamicsReport, Modes, StepView, System, find_modes, simulate, solve_statics,
+    DynamicsReport, Modes, StaticSolution, StepView, System, find_modes, simulate, solve_statics,
 };
 use catenix_model::file::parse_study;
 use catenix_model::{Channel, LineQuantity, ModeRange, ModeSettings, Model, Study, all_channels};
@@ -211,15 +211,29 @@ pub fn assert_near(what: &str, found: f64, expected: f64, tolerance: f64) {
     );
 }
 
-/// Solves the statics of a model.
-pub fn statics(model: &Model) -> Statics {
+/// The system of a model, which knows the tension of its equilibrium where it wants to.
+pub fn system(model: &Model) -> System {
     let system = System::new(model).unwrap_or_else(|error| panic!("{error}"));
-    let solution = solve_statics(&system, &mut |_| ControlFlow::Continue(()))
-        .unwrap_or_else(|error| panic!("{error}"));
-    read_statics(&system, &solution)
+    if system.wants_tension() {
+        settle(&system).tightened().unwrap()
+    } else {
+        system
+    }
 }
 
-fn read_statics(system: &System, solution: &catenix_engine::StaticSolution<'_>) -> Statics {
+/// The equilibrium of a system.
+pub fn settle(system: &System) -> StaticSolution<'_> {
+    solve_statics(system, &mut |_| ControlFlow::Continue(()))
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Solves the statics of a model.
+pub fn statics(model: &Model) -> Statics {
+    let system = system(model);
+    read_statics(&system, &settle(&system))
+}
+
+fn read_statics(system: &System, solution: &StaticSolution<'_>) -> Statics {
     let model = system.model();
     let view = solution.view();
     let read = |channel: &Channel| (channel.name.clone(), view.channel(channel.target));
@@ -239,9 +253,8 @@ fn read_statics(system: &System, solution: &catenix_engine::StaticSolution<'_>) 
 
 /// Solves statics and dynamics of a model.
 pub fn run(model: &Model) -> Run {
-    let system = System::new(model).unwrap_or_else(|error| panic!("{error}"));
-    let start = solve_statics(&system, &mut |_| ControlFlow::Continue(()))
-        .unwrap_or_else(|error| panic!("{error}"));
+    let system = system(model);
+    let start = settle(&system);
     let channels = all_channels(model);
     let mut values: Vec<Vec<f64>> = vec![Vec::new(); channels.len()];
     let mut time = Vec::new();
@@ -300,11 +313,8 @@ pub fn lowest_modes(model: &Model, count: usize) -> Modes<'static> {
 
 /// The modes about the equilibrium of a model. The system is leaked: a test is short.
 pub fn modes(model: &Model, settings: &ModeSettings) -> Modes<'static> {
-    let system = System::new(model).unwrap_or_else(|error| panic!("{error}"));
-    let system: &'static System = Box::leak(Box::new(system));
-    let equilibrium = solve_statics(system, &mut |_| ControlFlow::Continue(()))
-        .unwrap_or_else(|error| panic!("{error}"));
-    find_modes(system, &equilibrium, settings, &mut |_| {
+    let system: &'static System = Box::leak(Box::new(system(model)));
+    find_modes(system, &settle(system), settings, &mut |_| {
         ControlFlow::Continue(())
     })
     .unwrap_or_else(|error| panic!("{error}"))

@@ -37,7 +37,8 @@ table! {
         r#type: Text,
         /// Unstretched length.
         length: Positive<Length>,
-        /// Number of elements, all of one length.
+        /// Number of elements, all of one length; where there are attachments, of one length
+        /// between them.
         elements: Option<Count>,
         /// Length of an element; the nearest that divides the section evenly is used.
         element_length: Option<Positive<Length>>,
@@ -64,7 +65,8 @@ table! {
 table! {
     /// A small rigid lump on a line. Exactly one of `volume`, `net_lift` and `wet_weight` is given.
     pub(super) struct AttachmentTable {
-        /// Unstretched distance from end A.
+        /// Unstretched distance from end A. The nearest node moves there, unless it is an end of its
+        /// section or has moved to another attachment.
         at: NonNegative<Length>,
         /// Mass.
         mass: NonNegative<Mass>,
