@@ -16,7 +16,7 @@ use catenix_engine::formulation::dem::element::connector::ConnectorState;
 use catenix_engine::formulation::dem::element::pair::{RateWeights, Side};
 use catenix_engine::formulation::dem::element::stiffness::{ConnectorStiffness, HalfElement};
 use catenix_engine::hydro::current::CurrentField;
-use catenix_engine::hydro::morison::{DragCoefficients, DragMotion, drag, drag_tangent};
+use catenix_engine::hydro::morison::StripDrag;
 use catenix_engine::system::SystemSolver;
 use catenix_engine::{System, solve_statics};
 use catenix_model::file::read_study;
@@ -159,17 +159,18 @@ fn connectors(criterion: &mut Bench) {
 fn frame_loads(criterion: &mut Bench) {
     let model = sea_trial();
     let current = CurrentField::new(&model.environment.current);
-    let coefficients = DragCoefficients {
-        normal: 1600.0,
-        axial: 70.0,
-        radius_squared: 100.0 / 12.0,
-    };
     let mut noise = Noise(2);
-    let motions: Vec<DragMotion> = (0..BATCH)
-        .map(|_| DragMotion {
-            axis: noise.vector(1.0).normalize(),
-            relative_velocity: noise.vector(1.0),
-            spin: noise.vector(0.02),
+    let motions: Vec<StripDrag<f64>> = (0..BATCH)
+        .map(|_| {
+            let axis = noise.vector(1.0).normalize();
+            let (water, spin) = (noise.vector(1.0), noise.vector(0.02));
+            let coefficients = [1600.0, 70.0, 10.0 / 12f64.sqrt()];
+            StripDrag::new(
+                coefficients,
+                (&axis).into(),
+                (&water).into(),
+                (&spin).into(),
+            )
         })
         .collect();
     let depths: Vec<f64> = (0..BATCH).map(|_| 500.0 * (noise.next() - 1.0)).collect();
@@ -178,14 +179,15 @@ fn frame_loads(criterion: &mut Bench) {
     group.bench_function("drag", |bencher| {
         bencher.iter(|| {
             for motion in &motions {
-                black_box(drag(&coefficients, black_box(motion)));
+                black_box(black_box(motion).load());
             }
         });
     });
     group.bench_function("drag tangent", |bencher| {
         bencher.iter(|| {
             for motion in &motions {
-                black_box(drag_tangent(&coefficients, black_box(motion)));
+                let drag = black_box(motion);
+                black_box(drag.derivatives(&drag.load()));
             }
         });
     });

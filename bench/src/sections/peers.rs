@@ -48,16 +48,25 @@ impl Program {
         }
     }
 
-    /// Meshes (elements of pipe and hose) and steps [s] that are tried.
-    fn grid(self, quick: bool) -> Vec<([usize; 2], f64)> {
-        let (meshes, steps): (&[[usize; 2]], &[f64]) = match self {
+    /// Meshes (elements of pipe and hose) and steps [s] that are tried; `None` for those that
+    /// Catenix chooses as it goes.
+    fn grid(self, quick: bool) -> Vec<SetUp> {
+        let (meshes, steps): (&[[usize; 2]], &[Option<f64>]) = match self {
             Program::Catenix => (
-                &[MESH, [30, 66], [15, 33], [10, 21], [8, 15], [6, 12]],
-                &[0.1, 0.2, 0.32, 0.4, 0.5, 0.64],
+                &[
+                    MESH,
+                    [30, 66],
+                    [15, 33],
+                    [10, 21],
+                    [8, 15],
+                    [6, 12],
+                    [4, 12],
+                ],
+                &[Some(0.1), Some(0.2), Some(0.4), Some(0.5), Some(0.64), None],
             ),
             Program::Exudyn => (
                 &[MESH, [30, 66], [15, 33], [8, 18], [6, 12], [4, 9]],
-                &[0.2, 0.32, 0.4],
+                &[Some(0.2), Some(0.32), Some(0.4)],
             ),
             // Explicit steps go with the mesh: shares of the time that a sound wave takes through
             // an element, near the largest that is stable.
@@ -74,10 +83,11 @@ impl Program {
                     [4, 12],
                 ];
                 let chosen = if quick { &meshes[5..6] } else { &meshes[..] };
-                return pairs(chosen, &[0.7, 0.95])
-                    .into_iter()
-                    .map(|(mesh, share)| (mesh, share * sound_time(mesh)))
-                    .collect();
+                let steps = |mesh: &[usize; 2]| {
+                    let mesh = *mesh;
+                    [0.7, 0.95].map(|share| (mesh, Some(share * sound_time(mesh))))
+                };
+                return chosen.iter().flat_map(steps).collect();
             }
         };
         if quick {
@@ -88,7 +98,10 @@ impl Program {
     }
 }
 
-fn pairs(meshes: &[[usize; 2]], steps: &[f64]) -> Vec<([usize; 2], f64)> {
+/// A mesh and a step.
+type SetUp = ([usize; 2], Option<f64>);
+
+fn pairs(meshes: &[[usize; 2]], steps: &[Option<f64>]) -> Vec<SetUp> {
     let each = |mesh: &[usize; 2]| {
         let mesh = *mesh;
         steps.iter().map(move |step| (mesh, *step))
@@ -117,7 +130,8 @@ struct Trial {
     program: Program,
     case: String,
     mesh: [usize; 2],
-    step_s: f64,
+    /// `None`: as the program chooses.
+    step_s: Option<f64>,
     /// Processor time of the motion, in the fastest repeat [s].
     cpu_s: f64,
     /// Repeats.
@@ -147,12 +161,11 @@ impl Trial {
     }
 
     fn setting(&self) -> String {
-        format!(
-            "{} + {}, {} s",
-            self.mesh[0],
-            self.mesh[1],
-            digits(self.step_s)
-        )
+        let step = self.step_s.map_or_else(
+            || Stepping::Default.words(),
+            |step| format!("{} s", digits(step)),
+        );
+        format!("{} + {}, {step}", self.mesh[0], self.mesh[1])
     }
 }
 
@@ -179,8 +192,7 @@ impl Runner<'_> {
         &mut self,
         program: Program,
         case: &str,
-        mesh: [usize; 2],
-        step: f64,
+        (mesh, step): SetUp,
         right: &Outcome,
     ) -> Result<Trial, String> {
         let mut trial = Trial {
@@ -196,7 +208,8 @@ impl Runner<'_> {
         match program {
             Program::Catenix => {
                 // A mesh or step that does not converge is a finding, as it is for the peers.
-                let task = trial::task(self.context, case, mesh, Stepping::Fixed(step))?;
+                let stepping = step.map_or(Stepping::Default, Stepping::Fixed);
+                let task = trial::task(self.context, case, mesh, stepping)?;
                 match task.run(self.context) {
                     Ok(probe) => {
                         trial.cpu_s = probe.motion_cpu_s;
@@ -222,7 +235,7 @@ impl Runner<'_> {
             .arg(root.join(MODEL))
             .arg(&trial.case)
             .args(trial.mesh.map(|count| count.to_string()))
-            .arg(trial.step_s.to_string());
+            .args(trial.step_s.map(|step| step.to_string()));
         let answer: Answer = child::json_of(&mut command)?;
         if let Some(version) = answer.version
             && !self.versions.contains(&version)
@@ -233,7 +246,7 @@ impl Runner<'_> {
         if let (Some(cpu), Some(simulated), Some(outcome)) = found {
             trial.cpu_s = cpu;
             trial.simulated_s = simulated;
-            trial.step_s = answer.step_s.unwrap_or(trial.step_s);
+            trial.step_s = answer.step_s.or(trial.step_s);
             trial.errors = Some(outcome.errors(right));
         } else {
             eprintln!(
@@ -260,8 +273,8 @@ fn measure(context: &Context) -> Result<Value, String> {
         // First all set-ups once, then those that are compared, in turns.
         for program in PROGRAMS {
             eprintln!("  case {case}: {} ...", program.name());
-            for (mesh, step) in program.grid(context.quick) {
-                trials.push(runner.run(program, case, mesh, step, &reference.outcome)?);
+            for set_up in program.grid(context.quick) {
+                trials.push(runner.run(program, case, set_up, &reference.outcome)?);
             }
         }
         for repeat in 1..context.repeats() {
@@ -276,7 +289,7 @@ fn measure(context: &Context) -> Result<Value, String> {
                     step_s,
                     ..
                 } = trials[index];
-                let again = runner.run(program, case, mesh, step_s, &reference.outcome)?;
+                let again = runner.run(program, case, (mesh, step_s), &reference.outcome)?;
                 let trial = &mut trials[index];
                 trial.repeats += 1;
                 trial.cpu_s = trial.cpu_s.min(again.cpu_s);
@@ -476,7 +489,7 @@ mod tests {
             program,
             case: "a".to_owned(),
             mesh,
-            step_s: 0.1,
+            step_s: Some(0.1),
             cpu_s,
             repeats: 1,
             simulated_s: 1.0,

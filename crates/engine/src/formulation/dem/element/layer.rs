@@ -49,24 +49,25 @@ impl ConnectorStiffness {
 fn clamp(ratio: f64) -> (f64, f64) {
     let factor = 1.0 / (1.0 + ratio * ratio);
     let shift = factor / 6.0;
-    // exp(-mu) with 2 sinh(mu / 2) = ratio.
-    let decay = decay(ratio);
-    let amplitude = (1.0 / ratio - shift) / (1.0 / (1.0 - decay) - shift);
-    let stiffness = amplitude * (1.0 - decay + ratio * ratio * (1.0 - shift)) / (1.0 - amplitude);
-    (factor, (0.5 * stiffness).max(1.0))
+    let (half, root) = halves(ratio);
+    // A / (1 - A), and 1 - q over the ratio, times it.
+    let stiffness = (1.0 - shift * ratio) * (1.0 / (root + half) + ratio * (1.0 - shift))
+        / (1.0 + half / (root + 1.0));
+    (factor, stiffness.max(1.0))
 }
 
 /// Factor on the compliance of the half element beside a lump.
 fn lump(ratio: f64) -> f64 {
-    2.0 / ratio * (1.0 - decay(ratio).sqrt())
+    let (half, root) = halves(ratio);
+    1.0 - half / (root + 1.0)
 }
 
-/// What is left of a bend one element further on in a chain.
+/// Hyperbolic sine and cosine of mu / 2.
 ///
 /// Source: docs/theory/dem.md, eq. (42).
-fn decay(ratio: f64) -> f64 {
+fn halves(ratio: f64) -> (f64, f64) {
     let half = 0.5 * ratio;
-    (1.0 / (half + (1.0 + half * half).sqrt())).powi(2)
+    (half, (1.0 + half * half).sqrt())
 }
 
 #[cfg(test)]
@@ -111,6 +112,10 @@ mod tests {
         // second order in the ratio.
         let (shift, stiffness) = clamp(0.05);
         assert!(stiffness == 1.0 && (shift - 1.0).abs() < 3e-3);
+        // A tension that is nothing but round-off does nothing.
+        for ratio in [0.0, 1e-300, 1e-12, 1e-7] {
+            assert_eq!(clamp(ratio).1, 1.0, "{ratio}");
+        }
     }
 
     #[test]
