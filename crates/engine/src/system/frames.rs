@@ -87,45 +87,6 @@ pub(crate) struct LoadPowers {
     pub seabed_damping: f64,
 }
 
-/// Derivative of a function of the frame's increment, collected into a 6 x 6 block.
-struct Collector<'a> {
-    block: &'a mut Block6,
-    weights: FrameWeights,
-}
-
-impl Collector<'_> {
-    fn position(&mut self, row: usize, m: &Matrix3) {
-        self.block.add_quadrant(row, 0, m);
-    }
-
-    fn rotation(&mut self, row: usize, m: &Matrix3) {
-        self.block.add_quadrant(row, 1, m);
-    }
-
-    fn velocity(&mut self, row: usize, m: &Matrix3) {
-        self.block
-            .add_quadrant(row, 0, &(m * self.weights.velocity));
-    }
-
-    fn spin(&mut self, row: usize, m: &Matrix3) {
-        self.block
-            .add_quadrant(row, 1, &(m * self.weights.rotation * self.weights.velocity));
-    }
-
-    fn acceleration(&mut self, row: usize, m: &Matrix3) {
-        self.block
-            .add_quadrant(row, 0, &(m * self.weights.acceleration));
-    }
-
-    fn angular(&mut self, row: usize, m: &Matrix3) {
-        self.block.add_quadrant(
-            row,
-            1,
-            &(m * self.weights.rotation * self.weights.acceleration),
-        );
-    }
-}
-
 /// Contact of a frame with the seabed, if it touches it.
 pub(super) fn touch(sea: &Sea<'_>, frame: &Frame, m: &FrameMotion) -> Option<seabed::Contact> {
     let seabed = sea.seabed.filter(|_| frame.seabed_length > 0.0)?;
@@ -192,27 +153,24 @@ pub(crate) fn add_lump(
     let Some((block, weights)) = tangent else {
         return;
     };
-    let mut add = Collector {
-        block,
-        weights: *weights,
-    };
     let t = lump.lump.tangent(wet.share, &motion);
-    let arm_hat = hat(&arm);
-    let by_height = (t.water * slope + (t.share + Vector3::z() * lump.buoyancy) * wet.by_height)
-        * Vector3::z().transpose();
-    let by_rotation = t.rotation - by_height * arm_hat;
-    add.position(0, &-by_height);
-    add.position(1, &-(arm_hat * by_height));
-    add.rotation(0, &-by_rotation);
-    add.rotation(1, &(hat(&force) * -arm_hat - arm_hat * by_rotation));
-    add.velocity(0, &-t.velocity);
-    add.velocity(1, &-(arm_hat * t.velocity));
-    add.spin(0, &-t.spin);
-    add.spin(1, &-(arm_hat * t.spin));
-    add.acceleration(0, &-t.acceleration);
-    add.acceleration(1, &-(arm_hat * t.acceleration));
-    add.angular(0, &-t.angular_acceleration);
-    add.angular(1, &-(arm_hat * t.angular_acceleration));
+    let by_height = t.water * slope + (t.share + Vector3::z() * lump.buoyancy) * wet.by_height;
+    let FrameWeights {
+        velocity,
+        acceleration,
+        rotation,
+    } = weights;
+    // Of minus the force, by a move and a turn of the frame; the height is that of the lump.
+    let mut by_move = t.velocity * -velocity - t.acceleration * *acceleration;
+    let mut by_turn =
+        -(t.spin * *velocity + t.angular_acceleration * *acceleration) * rotation - t.rotation;
+    by_move.column_mut(2).axpy(-1.0, &by_height, 1.0);
+    by_turn += by_height * Vector3::new(-arm.y, arm.x, 0.0).transpose();
+    let lever = hat(&arm);
+    block.add_quadrant(0, 0, &by_move);
+    block.add_quadrant(0, 1, &by_turn);
+    block.add_quadrant(1, 0, &(lever * by_move));
+    block.add_quadrant(1, 1, &(lever * by_turn - hat(&force) * lever));
 }
 
 /// Mass matrix of a frame at its place: the structure, and the added mass if `in_water`.
