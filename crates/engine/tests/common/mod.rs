@@ -215,7 +215,9 @@ pub fn assert_near(what: &str, found: f64, expected: f64, tolerance: f64) {
 pub fn system(model: &Model) -> System {
     let system = System::new(model).unwrap_or_else(|error| panic!("{error}"));
     if system.wants_tension() {
-        settle(&system).tightened().unwrap()
+        settle(&system)
+            .tightened()
+            .unwrap_or_else(|error| panic!("{error}"))
     } else {
         system
     }
