@@ -111,13 +111,19 @@ impl<T: Lane> StripDrag<T> {
         // The points' velocities are normal to the axis, so that it is an eigenvector of both.
         let across = half * (self.speeds[0] + self.speeds[1]);
         let steep = axial * self.along.abs();
+        let by_spin = difference.crossing(lever);
         let velocity = Wrench {
             force: both.plus_outer(self.axis * (steep + steep - across), self.axis),
-            moment: difference.crossed_by(lever),
+            moment: -by_spin.transposed(),
         };
+        // [e] S [e], of a symmetric S with the eigenvector e.
+        let trace = both.0[0].x + both.0[1].y + both.0[2].z - across;
+        let turned = both
+            .plus_outer(self.axis * (trace - across), self.axis)
+            .plus_diagonal(-trace);
         let spin = Wrench {
-            force: difference.crossing(lever),
-            moment: both.crossing(lever).crossed_by(lever),
+            force: by_spin,
+            moment: turned * (radius * radius),
         };
         DragDerivatives {
             velocity,

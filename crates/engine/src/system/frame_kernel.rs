@@ -373,11 +373,15 @@ impl<T: Lane> FrameLoads<T> {
                 .outer(axis)
                 .plus_diagonal(added_inertia),
         };
-        let [x, y, z] = rotation.0;
-        let structure = (x * T::read(token, &rows.vectors[0]))
+        // The second moment in all directions, and what the others have beyond it.
+        let [x, _, z] = rotation.0;
+        let second: T = T::read(token, &rows.vectors[1]);
+        let first = T::read(token, &rows.vectors[0]) - second;
+        let third = T::read(token, &rows.vectors[2]) - second;
+        let structure = (x * first)
             .outer(x)
-            .plus_outer(y * T::read(token, &rows.vectors[1]), y)
-            .plus_outer(z * T::read(token, &rows.vectors[2]), z);
+            .plus_outer(z * third, z)
+            .plus_diagonal(second);
         FrameLoads {
             axis,
             share,
